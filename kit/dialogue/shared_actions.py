@@ -58,7 +58,7 @@ _SHARED: Final = (
     letter("fit", "0", "fit", "fit the whole world into the picture"),
     letter("follow", "v", "follow", "make the picture follow the robot"),
     letter("hand_over", "g", "program", "let a program drive: the last one, or another"),
-    letter("drive_mode", "z", "key mode", "choose how keys drive: automatic, latch, repeat"),
+    letter("drive_mode", "z", "key mode", "choose how keys drive: automatic, latch, hold"),
     letter("choose_map", "m", "map", "choose another map or case"),
 )  # fmt: skip
 

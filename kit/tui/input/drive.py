@@ -15,15 +15,15 @@ from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.input.modes import Clock, DriveMode, ExactMode, KeyEventKind, LatchMode, RepeatMode
 from kit.tui.input.protocol import reports_releases
 
-ModeName = Literal["exact", "repeat", "latch"]
+ModeName = Literal["exact", "hold", "latch"]
 
 _MODES: Final[Mapping[ModeName, Callable[[Clock], DriveMode]]] = MappingProxyType(
-    {"exact": ExactMode, "repeat": RepeatMode, "latch": LatchMode}
+    {"exact": ExactMode, "hold": RepeatMode, "latch": LatchMode}
 )
 MODE_TEXTS: Final[Mapping[ModeName, str]] = MappingProxyType(
     {
         "exact": "a key drives while it is down",
-        "repeat": "a key drives while it repeats",
+        "hold": "a key drives while you hold it",
         "latch": "each press is a step, Space stops",
     }
 )
@@ -53,7 +53,7 @@ class ModeChoice:
     reason: str
 
 
-UNASKED: Final = ModeChoice("repeat", "the terminal has not answered yet")
+UNASKED: Final = ModeChoice("hold", "the terminal has not answered yet")
 
 
 def automatic_mode(flags: int | None, hidden_by: str | None = None) -> ModeChoice:
@@ -63,7 +63,7 @@ def automatic_mode(flags: int | None, hidden_by: str | None = None) -> ModeChoic
     """
     if reports_releases(flags):
         return ModeChoice("exact", "this terminal reports key releases")
-    return ModeChoice("repeat", f"{hidden_by or 'this terminal'} reports no key releases")
+    return ModeChoice("hold", f"{hidden_by or 'this terminal'} reports no key releases")
 
 
 class KeyboardDrive:
@@ -99,7 +99,7 @@ class KeyboardDrive:
         """One line for the status bar: the mode, what it means, why; or what would be better."""
         choice = self.choice
         if isinstance(self._mode, RepeatMode) and self._mode.rhythm.uneven:
-            return "repeat: keys arrive unevenly over this link; latch mode would drive better"
+            return "hold: keys arrive unevenly over this link; latch mode would drive better"
         return f"{choice.mode}: {MODE_TEXTS[choice.mode]} ({choice.reason})"
 
     @property
@@ -109,7 +109,7 @@ class KeyboardDrive:
 
     @property
     def timeouts(self) -> tuple[float, float] | None:
-        """The silence [s] that releases a key in the mode ``repeat``, after its press and after a repeat; None in other modes."""
+        """The silence [s] that releases a key in the mode ``hold``, after its press and after a repeat; None in other modes."""
         if not isinstance(self._mode, RepeatMode):
             return None
         return self._mode.rhythm.first_timeout, self._mode.rhythm.next_timeout

@@ -1,4 +1,4 @@
-"""The three ways to read driving from keys: ``exact``, ``repeat`` and ``latch``."""
+"""The three ways to read driving from keys: ``exact``, ``hold`` and ``latch``."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from kit.tui.input.modes import Clock, KeyEventKind
 from kit.tui.terminal import TerminalDecision
 
 _NEXT: Final[Mapping[ModeName | None, ModeName | None]] = MappingProxyType(
-    {None: "latch", "latch": "repeat", "repeat": None, "exact": None}
+    {None: "latch", "latch": "hold", "hold": None, "exact": None}
 )
 
 
@@ -69,7 +69,7 @@ class DriveScreen(Screen[None]):
         """Called when ``drive.status`` reads differently."""
 
     def action_drive_mode(self) -> None:
-        """Automatic, then latch, then repeat, then automatic again; so also on the screens that follow."""
+        """Automatic, then latch, then hold, then automatic again; so also on the screens that follow."""
         mode = _NEXT[self.drive.requested_mode]
         if isinstance(self.app, DriveModeKeeper):
             self.app.drive_mode = mode

@@ -27,7 +27,7 @@ from kit.run.scenario import Scenario
 from kit.school.game.ghosts import Ghost
 from kit.school.game.league.entries import LeagueError, program_of_agent, submit
 from kit.school.game.league.league import League
-from kit.school.game.league.league_blocks import matches_table, standings_table, summary_blocks
+from kit.school.game.league.league_blocks import KEYS, matches_table, standings_table, summary_blocks
 from kit.school.game.league.standings import Match, Standings, match_recordings, read_standings
 from kit.school.game.league.tag_game import tag_scenario
 from kit.school.game.race import DriverKind
@@ -188,7 +188,7 @@ class LeagueScreen(RowsScreen[None]):
         """Standings and matches, beside each other where there is room, or what a league is where nobody is entered."""
         is_wide = width >= WIDE
         left_width = STANDINGS_WIDTH if is_wide else width
-        head = [row(), *rows_of(summary_blocks(standings), Page(left_width - 4, margin=2)), row()]
+        head = [row(), *rows_of(summary_blocks(standings, KEYS), Page(left_width - 4, margin=2)), row()]
         room = height - len(head)
         left: list[Row] = list(head)
         if standings.places:

@@ -212,7 +212,7 @@ def test_exact(story: str) -> None:
 
 @every_case("story", REPEAT)
 def test_repeat(story: str) -> None:
-    Script("repeat").play(REPEAT[story])
+    Script("hold").play(REPEAT[story])
 
 
 @every_case("story", LATCH)
@@ -222,7 +222,7 @@ def test_latch(story: str) -> None:
 
 @pytest.mark.parametrize(
     ("mode", "stories"),
-    [("exact", EXACT), ("repeat", REPEAT), ("latch", LATCH)],
+    [("exact", EXACT), ("hold", REPEAT), ("latch", LATCH)],
     ids=lambda value: value if isinstance(value, str) else "",
 )
 def test_every_press_message_has_its_release(mode: ModeName, stories: dict[str, list[Step]]) -> None:
@@ -243,7 +243,7 @@ def test_every_press_message_has_its_release(mode: ModeName, stories: dict[str, 
 
 
 def test_the_deadline_says_when_to_look_again() -> None:
-    script = Script("repeat")
+    script = Script("hold")
     assert script.drive.deadline is None
     script.play([(10.0, "press w", ["p_up"], {"up": 1})])
     assert script.drive.deadline == pytest.approx(10.15)
@@ -268,11 +268,11 @@ def test_the_strengths_add_up_to_a_push() -> None:
     [
         (27, None, "exact", "reports"),
         (31, "tmux", "exact", "reports"),
-        (25, None, "repeat", "this terminal"),
-        (2, None, "repeat", "this terminal"),
-        (None, None, "repeat", "this terminal"),
-        (None, "tmux", "repeat", "tmux"),
-        (None, "mosh", "repeat", "mosh"),
+        (25, None, "hold", "this terminal"),
+        (2, None, "hold", "this terminal"),
+        (None, None, "hold", "this terminal"),
+        (None, "tmux", "hold", "tmux"),
+        (None, "mosh", "hold", "mosh"),
     ],
 )
 def test_the_automatic_mode(flags: int | None, hidden_by: str | None, mode: str, says: str) -> None:
@@ -283,7 +283,7 @@ def test_the_automatic_mode(flags: int | None, hidden_by: str | None, mode: str,
 
 def test_a_wish_beats_the_terminal_and_can_be_taken_back() -> None:
     drive = KeyboardDrive(lambda: 0.0)
-    assert drive.choice.mode == "repeat"
+    assert drive.choice.mode == "hold"
     drive.choose("latch")
     drive.terminal_answered(27)
     assert drive.choice.mode == "latch"
@@ -302,7 +302,7 @@ def test_a_change_of_mode_stops_and_no_change_does_not() -> None:
 
 @pytest.mark.parametrize("flags", [27, None])
 @pytest.mark.parametrize("hidden_by", [None, "screen"])
-@pytest.mark.parametrize("wish", [None, "exact", "repeat", "latch"])
+@pytest.mark.parametrize("wish", [None, "exact", "hold", "latch"])
 def test_the_status_is_one_line_that_fits(
     flags: int | None, hidden_by: str | None, wish: ModeName | None
 ) -> None:
@@ -312,6 +312,6 @@ def test_the_status_is_one_line_that_fits(
     drive.choose(wish)
     lines.append(drive.status)
     for line in lines:
-        assert line.partition(":")[0] in ("exact", "repeat", "latch")
+        assert line.partition(":")[0] in ("exact", "hold", "latch")
         assert len(line) <= 78
         assert "\n" not in line

@@ -267,7 +267,7 @@ def test_a_terminal_without_the_protocol_gets_learned_repeats(
     terminal: Run, traits: dict[str, object]
 ) -> None:
     app = terminal("drive_app.py", **traits)
-    app.until_reported(["mode", "repeat"])
+    app.until_reported(["mode", "hold"])
     app.send(b"\x1b[A")
     app.until_reported(["press", "up", "p_up"], ["strength", {"up": 0.35}], ["timeout", "", "r_up"])
     app.send(b"\x1bOC")

@@ -1,4 +1,4 @@
-"""Simulated keyboards: how well ``repeat`` guesses, on the systems students have, over links that jitter."""
+"""Simulated keyboards: how well ``hold`` guesses, on the systems students have, over links that jitter."""
 
 from __future__ import annotations
 

@@ -65,10 +65,10 @@ def play(scene: Scene, environ: Mapping[str, str] = TMUX) -> None:
     asyncio.run(run())
 
 
-def test_before_the_terminal_answers_keys_drive_by_repeat() -> None:
+def test_before_the_terminal_answers_keys_drive_while_held() -> None:
     async def scene(screen: Recorder, pilot: Pilot[None]) -> None:
         await pilot.press("w", "k", "shift+left")
-        assert screen.drive.choice.mode == "repeat"
+        assert screen.drive.choice.mode == "hold"
         assert screen.messages == ["p_up", "p_left"]
 
     play(scene)
@@ -78,7 +78,7 @@ def test_the_answer_sets_the_mode_and_names_who_hides_the_releases() -> None:
     async def scene(screen: Recorder, pilot: Pilot[None]) -> None:
         screen.app.post_message(KeyboardAnswer(None))
         await pilot.pause()
-        assert screen.drive.choice.mode == "repeat"
+        assert screen.drive.choice.mode == "hold"
         assert "tmux" in screen.drive.status
         screen.app.post_message(KeyboardAnswer(27))
         await pilot.pause()
@@ -192,7 +192,7 @@ def test_one_key_goes_through_the_modes() -> None:
         for _ in range(4):
             modes.append((screen.drive.requested_mode, screen.drive.choice.mode))
             screen.action_drive_mode()
-        assert modes == [(None, "exact"), ("latch", "latch"), ("repeat", "repeat"), (None, "exact")]
+        assert modes == [(None, "exact"), ("latch", "latch"), ("hold", "hold"), (None, "exact")]
 
     play(scene)
 
@@ -212,6 +212,6 @@ def test_the_mode_that_was_chosen_holds_on_the_screens_that_follow_and_on_those_
             second.action_drive_mode()
             await app.pop_screen()
             await pilot.pause()
-            assert below.drive.requested_mode == "repeat"
+            assert below.drive.requested_mode == "hold"
 
     asyncio.run(run())

@@ -41,7 +41,7 @@ def texts(rows: list[Row] | tuple[Row, ...]) -> list[str]:
 
 
 def figures(view: View, width: int) -> list[Row]:
-    return figure_rows("robot", readout(view, "repeat"), width)
+    return figure_rows("robot", readout(view, "hold"), width)
 
 
 def test_the_panel_keeps_to_its_size_and_leaves_out_the_least_important(views: list[View]) -> None:

@@ -75,7 +75,7 @@ def test_with_releases_repeats_and_releases_show() -> None:
 
 def test_m_changes_the_mode_and_x_closes() -> None:
     async def scene(app: App[None], pilot: Pilot[None]) -> None:
-        assert row(app, "repeat")
+        assert row(app, "hold")
         await pilot.press("z")
         assert row(app, "latch")
         await pilot.press("x")

@@ -22,6 +22,7 @@ def test_an_empty_league_says_how_to_enter_and_a_program_enters_by_a_key(tmp_pat
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Nobody is entered")
+        assert "kit league" not in text(pilot), "keys do it here"
         await pilot.press("enter", "down")  # nothing to open or choose
         await pilot.press("e")
         await seen(pilot, "Which of yours enters")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final, NamedTuple
 
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
 from kit.plain_text import join_names
@@ -12,19 +13,43 @@ from kit.school.game.league.standings import DRAW, Match, Place, Standings
 TEXT = CellStyle.TEXT
 
 
-def summary_blocks(standings: Standings) -> list[Block]:
+class LeagueWords(NamedTuple):
+    """How a face says what is to be done."""
+
+    enter: str
+    opponent: str
+    run: str
+    watch: str
+
+
+COMMANDS: Final = LeagueWords(
+    "`kit league submit --controller FILE` enters a program of yours, `--agent RUN` an agent that you trained.",
+    "A copy of your program with a change will do: enter it with `--name OTHER`.",
+    "`kit league run`",
+    "`kit league replay NUMBER` shows one",
+)
+KEYS: Final = LeagueWords(
+    "e enters one of your programs, or an agent that you trained.",
+    "A copy of your program with a change will do, under another name in ~/robot-kit/controllers.",
+    "t",
+    "Enter opens an entrant's matches, and replays one",
+)
+
+
+def summary_blocks(standings: Standings, words: LeagueWords = COMMANDS) -> list[Block]:
     """Who is the champion, what is still to be run, and who takes no part."""
     blocks: list[Block] = []
     champion = standings.champion
     if len(standings.places) < 2:
         alone = "Nobody is" if not standings.places else f"{standings.places[0].entry.name} alone is"
         blocks.append(Text(f"{alone} entered: a league needs two."))
-        blocks += rules_blocks(standings.programme)
+        blocks += rules_blocks(standings.programme, words)
     elif standings.unread:
         read = standings.jobs - standings.unread
-        blocks.append(Text(f"Running the drives again: {read} of {standings.jobs}."))
+        text = "This machine judges every drive itself; next time only those that are new."
+        blocks.append(Text(text, lead=f"Running the drives again: {read} of {standings.jobs}."))
     elif champion is None:
-        blocks.append(Text("No match has been won yet. `kit league run` runs what is missing."))
+        blocks.append(Text(f"No match has been won yet. {words.run} drives the matches that are missing."))
     elif standings.is_certain:
         blocks.append(Text(f"{champion.entry.name} is the champion.", Tone.GOOD))
     else:
@@ -38,31 +63,19 @@ def summary_blocks(standings: Standings) -> list[Block]:
     return blocks
 
 
-def rules_blocks(programme: Programme) -> list[Block]:
+def rules_blocks(programme: Programme, words: LeagueWords) -> list[Block]:
     """What the entrants of a league do, and how one enters."""
-    races, tag = (tuple(level.title for level in levels) for levels in (programme.races, programme.tag))
+    races, tag = (
+        join_names([level.title for level in levels]) for levels in (programme.races, programme.tag)
+    )
+    alone = "each entrant drives alone, from five starts; the middle drives are compared."
+    together = "two robots in one world; whoever was the catcher for less time wins."
     rules = [
-        (
-            "Races",
-            f"{join_names(races)}: each entrant drives alone, from five starts; the middle drives are compared.",
-        )
-        if races
-        else None,
-        (
-            "Tag",
-            f"{join_names(tag)}: two robots in one world; the one that was the catcher for less time wins.",
-        )
-        if tag
-        else None,
-        (
-            "Enter",
-            "`kit league submit --controller FILE` a program of yours, `--agent RUN` an agent that you trained.",
-        ),
-        ("An opponent", "a copy of your program with a change will do, entered with `--name OTHER`."),
-        (
-            "Then",
-            "`kit league run` drives the matches; ratings follow from who beat whom, and each match can be watched.",
-        ),
+        ("Races", f"{races}: {alone}") if races else None,
+        ("Tag", f"{tag}: {together}") if tag else None,
+        ("Enter", words.enter),
+        ("An opponent", words.opponent),
+        ("Then", f"{words.run} drives the matches; ratings follow from who beat whom. {words.watch}."),
     ]
     return [labelled_table(rule for rule in rules if rule is not None)]
 
