@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
-from kit.document.rows import PLAIN, Row, at_both_edges, row
+from kit.document.rows import PLAIN, Row, at_both_edges, broken, row
+from kit.inspection.definition_text import CommentOptions, definition_text
+from kit.msg.definition_parser import DefinitionError
 from kit.msg.message import Message
 from kit.plain_text import counted, wrap
 from kit.render.graph import rate_text
@@ -16,6 +19,8 @@ from kit.render.message_rows import message_field_rows
 from kit.ros.graph.snapshot import EndpointState, GraphState, ServiceState, TopicState
 from kit.ros.graph.topic_statistics import FieldSample, FlowStats, MessageFlow
 
+INDENT: Final = 2
+"""Columns by which the fields of a field are indented."""
 MARKED: Final = "key"
 """The style of the field that is chosen in a message."""
 
@@ -82,6 +87,20 @@ def about(
         service = next((service for service in heard.state.services if service.name == name), None)
         head = () if service is None else tuple(_service_rows(service))
     return (*head, *_newest_message_rows(heard.message_of(spot), width, full, field))
+
+
+@cache
+def definition_rows(cls: type[Message], width: int) -> list[Row]:
+    """The definition of a type with what its comments say of its fields; none of a type that nobody has written down."""
+    try:
+        text = definition_text(cls, CommentOptions(nested=True))
+    except (DefinitionError, LookupError, OSError):
+        return []
+    rows: list[Row] = []
+    for line in filter(str.strip, text.splitlines()):
+        field, sign, comment = line.expandtabs(INDENT).partition("#")
+        rows += broken(row(field, (f"{sign}{comment}", "dim")), width)
+    return rows
 
 
 def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:

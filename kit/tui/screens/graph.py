@@ -16,7 +16,7 @@ from textual.widgets import Input
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
-from kit.document.rows import row
+from kit.document.rows import Row, row, side_by_side
 from kit.msg.conversion import FieldValue, field_values
 from kit.render.graph import GraphView, draw_graph
 from kit.render.graph_data import GraphData, build_graph_data
@@ -28,7 +28,7 @@ from kit.render.message_animation import MessageAnimation
 from kit.render.message_rows import message_field_rows
 from kit.ros.graph.snapshot import GraphState, snapshot
 from kit.ros.graph.topic_statistics import TopicStats
-from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, heading, rates, ruled
+from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, definition_rows, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.session_host import SessionHost
@@ -85,6 +85,8 @@ ABOUT_ROWS: Final = 5
 """Of what is chosen: its name, its ends, and as much of its newest message as there is room for."""
 
 
+WIDE: Final = 150
+"""Columns from which the definition of a message stands beside it."""
 PARTS: Final = (
     ("left", "the nodes that publish, or call"),
     ("middle", "topics with their rates, services with ()"),
@@ -292,7 +294,10 @@ class GraphScreen(RowsScreen[None]):
         width = self._rows("about").size.width or self.size.width
         full = self._shows_details or self.has_class("-tall")
         field = self._shown_field() if self._shows_details else ""
-        head, *words = ruled(about(self._chosen, heard, width, full=full, field=field), self._rule, width)
+        means = self._definition(heard, width)
+        column = width // 2 if means else width
+        head, *words = ruled(about(self._chosen, heard, column, full=full, field=field), self._rule, width)
+        words = side_by_side(words, means, column) if means else words
         self._about_rows = len(words) + 1
         room = self._rows("about").size.height - 1
         marked = [
@@ -308,6 +313,13 @@ class GraphScreen(RowsScreen[None]):
         self._rows("about").show((head, *words[self._scrolled :]))
         self._show_plot(field)
         self._show_keys()
+
+    def _definition(self, heard: GraphUpdate, width: int) -> list[Row]:
+        """The definition of the message's type, beside it where there is room; not beside a plot."""
+        message = heard.message_of(self._chosen)
+        if message is None or width < WIDE or self._shows_details or not self.has_class("-tall"):
+            return []
+        return definition_rows(type(message), width - width // 2)
 
     def _fields(self) -> list[str]:
         """The paths of the fields of the message that is shown whole."""

@@ -156,6 +156,22 @@ def test_a_choice_shows_its_newest_message() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.parametrize(("size", "has_room"), [((200, 50), True), ((120, 35), False)])
+def test_the_definition_of_a_message_stands_beside_it_where_there_is_room(
+    size: tuple[int, int], has_room: bool
+) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        await pilot.press("down")
+        host.show()
+        host.tick(0.25)
+        await settled(screen)
+        assert "0.25" in text(screen)
+        assert ("Vector3 linear" in text(screen)) is has_room
+
+    play(scene, size=size)
+
+
+@pytest.mark.long
 def test_messages_travel_while_there_are_any_and_leave_nothing_behind() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         host.tick()
