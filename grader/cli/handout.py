@@ -39,7 +39,7 @@ STARTER: Final = "starter"
 @click.command()
 @click.argument("folder", type=ExistingPath(file_okay=False, path_type=Path))
 @click.option(
-    "--to",
+    "--output",
     "target",
     type=click.Path(path_type=Path),
     required=True,
@@ -69,9 +69,9 @@ def release(
     """Make the student's version of the assignment in FOLDER: sheet, starter, public seeds, README, and its other files.
 
     \b
-    grader release hall --to hall-for-students
-    grader release hall --to hall.zip
-    grader release hall --to hall-template --repository --kit https://HOST/PATH@v1
+    grader release hall --output hall-for-students
+    grader release hall --output hall.zip
+    grader release hall --output hall-template --repository --kit https://HOST/PATH@v1
 
     The secret seeds, solution, wrong solutions and reference stay, and so do criteria that students may not see yet. It is
     refused where a secret would go out all the same: in another file, in an archive, as a passage of the solution.

@@ -113,7 +113,7 @@ def check(task: str) -> None:
 @command.command()
 @click.argument("task")
 @click.option(
-    "--to",
+    "--output",
     "archive",
     type=OutputFile(),
     help="File to write (default: NAME.zip here).",

@@ -42,7 +42,7 @@ WRITERS = {
     "kit replay --export": "kit replay {made}/drive --export {out}.svg",
     "kit maps new": "kit maps new hall --from {made}/drawing.txt --workspace {out}",
     "kit pkg create --dest": "kit pkg create robo --dest {out}",
-    "kit task pack --to": "kit task pack {made}/mine --to {out}",
+    "kit task pack --output": "kit task pack {made}/mine --output {out}",
     "kit task unpack --dest": "kit task unpack {made}/packed --dest {out}",
     "kit progress export": "kit progress export {out}",
     "kit study --csv": "kit study 3.4 --csv {out}",
@@ -146,7 +146,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for words in (
         "kit run simple --steps 30 --record {made}/drive",
         "kit task new mine",
-        "kit task pack {made}/mine --to {made}/packed",
+        "kit task pack {made}/mine --output {made}/packed",
         "grader new {made}/assignment",
         "grader check {made}/assignment/solution.py --assignment {made}/assignment --json --output {made}/result.json",
     ):

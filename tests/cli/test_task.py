@@ -252,14 +252,14 @@ def test_the_reward_of_a_packed_task_is_run_without_ones_rights(tmp_path: Path) 
     Path("mine/own.py").write_text(
         f"try:\n    open({str(written)!r}, 'w')\nexcept OSError:\n    pass\ndef reward(reached):\n    return 1.0 * reached\n"
     )
-    kit("task", "pack", "mine", "--to", "sent.zip")
+    kit("task", "pack", "mine", "--output", "sent.zip")
     assert ": valid" in kit("task", "check", "sent.zip").output
     assert not written.exists()
 
 
 def test_a_packed_task_is_checked_and_unpacked() -> None:
     kit("task", "new", "mine")
-    assert "task.yaml" in kit("task", "pack", "mine", "--to", "sent.zip").output
+    assert "task.yaml" in kit("task", "pack", "mine", "--output", "sent.zip").output
     assert "sent.zip: valid" in kit("task", "check", "sent.zip").output
     assert "kit train there/mine" in kit("task", "unpack", "sent.zip", "--dest", "there").output
     assert "already exists" in kit("task", "unpack", "sent.zip", "--dest", "there", code=2).output

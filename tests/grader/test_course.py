@@ -217,10 +217,16 @@ def test_a_course_from_the_template_to_the_grades(tmp_path: Path, monkeypatch: p
         Path("task/test_own.py").write_text(OWN_TEST)
         Path("task/solution.py").write_text(program(30))
     with step("release as a folder, a zip and a repository"):
-        invoke("release", "task", "--to", "out")
-        invoke("release", "task", "--to", "out.zip")
+        invoke("release", "task", "--output", "out")
+        invoke("release", "task", "--output", "out.zip")
         invoke(
-            "release", "task", "--to", "out-repository", "--repository", "--kit", "https://example.org/kit@v1"
+            "release",
+            "task",
+            "--output",
+            "out-repository",
+            "--repository",
+            "--kit",
+            "https://example.org/kit@v1",
         )
         for content in (*released("out"), *released("out-repository"), *zipped("out.zip")):
             assert all(each not in content for each in (str(SECRET).encode(), b"SPEED = 0.35"))

@@ -88,7 +88,7 @@ def test_a_new_assignment_has_secret_seeds_of_its_own(name: str | None, tmp_path
 @pytest.mark.parametrize("shape", ["folder", "zip", "repository"])
 def test_no_secret_byte_goes_out(shape: str, hall: Path, tmp_path: Path) -> None:
     target = tmp_path / ("out.zip" if shape == "zip" else "out")
-    command = ["release", str(hall), "--to", str(target)]
+    command = ["release", str(hall), "--output", str(target)]
     command += ["--repository", "--kit", "https://example.org/kit@v1"] if shape == "repository" else []
     done = CliRunner().invoke(main, command)
     assert done.exit_code == 0, done.output
@@ -153,7 +153,7 @@ def test_a_secret_that_would_go_out_is_refused_and_named(leak: str, hall: Path, 
     with pytest.raises(ReleaseRefused) as refused:
         released(hall)
     assert str(LONG_SEED) not in str(refused.value)
-    done = CliRunner().invoke(main, ["release", str(hall), "--to", str(tmp_path / "out")])
+    done = CliRunner().invoke(main, ["release", str(hall), "--output", str(tmp_path / "out")])
     assert done.exit_code == 2
     assert not (tmp_path / "out").exists()
 
