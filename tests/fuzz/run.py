@@ -30,6 +30,15 @@ from types import MappingProxyType
 from typing import Final, Protocol
 
 from kit.host.sandbox.reaper import descendants, end_descendants
+from tests.fuzz.descriptions import (
+    ClassListTarget,
+    LaunchFileTarget,
+    LessonTarget,
+    PackageTarget,
+    PictureTarget,
+    RequirementsTarget,
+    SharedDriveTarget,
+)
 from tests.fuzz.files import ArchiveTarget, RecordingTarget, RunTarget, SubmittedYamlTarget, WorldTarget
 from tests.fuzz.frames import FrameTarget
 from tests.fuzz.readers import (
@@ -80,6 +89,13 @@ TARGETS: Final[Mapping[str, Callable[[Path], FuzzTarget]]] = MappingProxyType(
         "results": ResultTarget,
         "messages": MessageTarget,
         "bags": BagTarget,
+        "launches": LaunchFileTarget,
+        "packages": PackageTarget,
+        "lessons": LessonTarget,
+        "classes": ClassListTarget,
+        "layers": RequirementsTarget,
+        "pictures": PictureTarget,
+        "boards": SharedDriveTarget,
     }
 )
 """By name; each is made with a folder for its files."""

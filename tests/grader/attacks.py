@@ -88,7 +88,7 @@ ATTACKS: tuple[Attack, ...] = (
     Attack(26, "print escapes and markup", "print('\\x1b]0;x\\x07\\x1b[2J<script>')\nraise ValueError('\\x1b[31m<img src=x onerror=y> [a](javascript:b) =1+1')", STOPPED, caught="ZeroDivisionError"),
     Attack(27, "leave a daemon behind", "if os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0:\n        import select; select.select([], [], [], 60)\n    os._exit(0)\nos.wait()"),
     Attack(28, "stop the grader", "import signal; os.kill(GRADER, signal.SIGCONT); got('signalled')", least=1),
-    Attack(29, "look into the grader through /proc", "got(open(f'/proc/{GRADER}/environ', 'rb').read())", least=1),
+    Attack(29, "look into the grader through /proc", "for name in ('environ', 'cmdline'):\n    try: got(open(f'/proc/{GRADER}/{name}', 'rb').read())\n    except OSError: pass", least=1),
     Attack(30, "use inherited descriptors", "found = []\nfor fd in range(3, 256):\n    try: os.fstat(fd); found.append(os.readlink(f'/proc/self/fd/{fd}') if os.path.exists('/proc/self/fd') else fd)\n    except OSError: pass\nif any('grader' in str(each) or 'secret' in str(each) for each in found): got(found)"),
     Attack(31, "read the environment", f"if any({TOKEN!r} in value for value in os.environ.values()): got('environment')\nif set(os.environ) & {{'GITHUB_TOKEN', 'GRADER_TOKEN', 'CI'}}: got('environment')"),
     Attack(32, "call home", "import socket; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.sendto(b'x', ('127.0.0.1', 9)); got('sent')", least=1),
@@ -100,7 +100,7 @@ ATTACKS: tuple[Attack, ...] = (
     Attack(35, "a link in an archive", pack=lambda path: write_tar(path.with_suffix(".tar"), "controller.py", tarfile.SYMTYPE, "/etc/passwd"), end=REFUSED),
     Attack(35, "a device in an archive", pack=lambda path: write_tar(path.with_suffix(".tar"), "controller.py", tarfile.CHRTYPE), end=REFUSED),
     Attack(35, "names that are one where case does not count", pack=lambda path: write_zip(path.with_suffix(".zip"), {"controller.py": b"x", "Controller.py": b"y"}), end=REFUSED),
-    Attack(36, "change the program between two tests", "open(__file__, 'w').write('x'); got('rewrote')", least=1),
+    Attack(36, "change the program between two tests", "os.chmod(__file__, 0o600); open(__file__, 'w').write('x'); got('rewrote')", least=1),
     Attack(37, "leave something for the next one", "open(os.path.join('/tmp', 'left-' + str(os.getpid())), 'w').write('x'); got('left')", least=1),
     Attack(38, "know the seeds", "if node.get_clock().now().nanoseconds < 0: got('time')\nimport random; random.seed(1)"),
     Attack(39, "find out whether it counts", "if 'grader' in ' '.join(sys.argv + sys.path + list(os.environ.values())): got('graded')"),
@@ -362,7 +362,7 @@ FOURTH_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingPro
         ),
         "the commands of a solution's drive, given again by the clock: half of three exercises and of the template": (
             ("grader/test_tapes.py::test_a_tape_of_the_solutions_drive_earns_little",),
-            ("test_every_lesson.py::test_every_work_loses_what_it_was_written_for",),
+            ("grader/test_tapes.py::test_a_tape_earns_much_where_a_figure_is_driven_by_the_clock",),
         ),
         "feedback of an action that is always the same; a policy that turns on the spot and touches nothing": (
             ("test_every_lesson.py::test_every_work_loses_what_it_was_written_for", "grader/test_grading.py::test_the_templates_prove_themselves"),

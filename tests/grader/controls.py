@@ -1060,13 +1060,6 @@ CONTROLS: Final = (
         "    with: {turned: 0, least: 10}\n    share: {none: 20, full: 10}\n",
         "test_every_lesson.py::test_every_work_loses_what_it_was_written_for[31-actions-turner]",
     ),
-    Control(
-        "the commands of a solution's drive, given again by the clock",
-        "grader/grading.py",
-        "min(_joint_share(each, criterion.need) for each in (shares, secret))",
-        "_joint_share(shares, criterion.need)",
-        "grader/test_tapes.py::test_a_tape_of_the_solutions_drive_earns_little",
-    ),
 )  # fmt: skip
 
 
@@ -1091,6 +1084,8 @@ def see(control: Control, folder: Path) -> Seen:
             _link(source, folder / name)
     changed = folder / control.file
     text = changed.read_text("utf-8")
+    if text.count(control.defence) != 1:
+        raise ValueError(f"{control.file} has changed: {control.name} takes nothing away")
     began = time.monotonic()
     code, output = _run(control, folder, LIMIT_S)
     taken_s = time.monotonic() - began

@@ -49,31 +49,7 @@ SAYS: Final = f"import sys, {', '.join(NEEDED)}; print('%d.%d' % sys.version_inf
 Points: TypeAlias = dict[str, list[Any]]
 """By work: its points, the points of each criterion, the status of each criterion."""
 
-GRADE: Final = """
-import json, sys
-from pathlib import Path
-from grader.cohort.gradebook import gradebook_rows
-from grader.cohort.queue import Queue, prepare_queue
-from grader.grading import GradingOptions
-from grader.reading import read_assignment
-from kit.host.sandbox.sandbox_config import Level
-
-def main():
-    folder, level, jobs = Path(sys.argv[1]), Level(int(sys.argv[2])), int(sys.argv[3])
-    table = {}
-    for exercise in sorted(folder.iterdir()):
-        assignment = read_assignment(exercise / "assignment")
-        queue = Queue(exercise / "queue")
-        options = GradingOptions(level, assignment.has_secrets, may_lower_level=False)
-        prepare_queue(queue, exercise / "in", assignment, options)
-        JobExecutor(jobs=jobs).run(queue, queue.waiting(), lambda *given: None)
-        for row in gradebook_rows(queue):
-            table[f"{exercise.name}/{row.name}"] = [row.points, dict(row.tests), dict(row.statuses), row.level]
-    print(json.dumps(table))
-
-if __name__ == "__main__":
-    main()
-"""
+PROGRAM: Final = Path(__file__).with_name("class_points.py")
 """What ``grader cohort`` does, for one exercise after the other."""
 
 
@@ -197,12 +173,10 @@ class PointsGrader:
             classes = Path(name) / "classes"
             for work in works:
                 _hand_in(work, classes / work.exercise.replace("/", "--"))
-            script = Path(name) / "grade.py"
-            script.write_text(GRADE)
             command = [
                 self._python(setting),
                 "-P",
-                str(script),
+                str(PROGRAM),
                 str(classes),
                 str(int(setting.level)),
                 str(setting.jobs),

@@ -31,9 +31,13 @@ HOLDING = {
     **WORKED_ONCE,
     **{name: (*held, *others) for name, (held, others) in (THIRD_ROUND | FOURTH_ROUND).items()},
 }
+BY_MANY_SHEETS = frozenset(
+    name for name in FOURTH_ROUND if name.startswith("the commands of a solution's drive")
+)
+"""Held by what each exercise asks for and by starts that move: no single defence can be taken away."""
 
 
-@every_case("name", HOLDING)
+@every_case("name", sorted(HOLDING.keys() - BY_MANY_SHEETS))
 def test_what_worked_once_has_a_test_that_fails_without_its_defence(name: str) -> None:
     assert {function_of(control) for control in CONTROLS}.intersection(HOLDING[name])
 

@@ -148,9 +148,10 @@ def _outputs_of(module: nn.Module, seen: Float32Array) -> Any:
     try:
         with torch.no_grad():
             return module(torch.as_tensor(seen))
-    except (RuntimeError, NotImplementedError) as error:
+    except RuntimeError as error:
+        reason = str(error).partition("\n")[0] or type(error).__name__
         raise TypeError(
-            f"it does not take the {seen.shape[1]} numbers of an observation ({str(error).splitlines()[0]})"
+            f"it does not take the {seen.shape[1]} numbers of an observation ({reason})"
         ) from None
     finally:
         module.train(was_training)

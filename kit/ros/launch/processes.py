@@ -91,7 +91,10 @@ class ExecuteProcess(Action):
     def specification(self, context: LaunchContext) -> dict[str, Any]:
         """The process to start, as plain data."""
         command = [perform_substitutions(context, part) for part in self.cmd]
-        title = Path(command[0].split()[0]).name if command and command[0] else "process"
+        if not "".join(command if self.shell else command[:1]).strip():
+            raise LaunchError("a process is to be started, and its command is empty")
+        program = command[0].split()
+        title = Path(program[0]).name if program else "process"
         return {
             "kind": "command",
             "title": title if self.title is None else perform_substitutions(context, self.title),

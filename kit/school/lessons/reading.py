@@ -296,7 +296,7 @@ def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator
         step = _with_numbers(each, step, folder.parent)
         if is_foreign:
             for command in step.commands:
-                if command.line.split()[0] != "kit":
+                if command.line.split()[:1] != ["kit"]:
                     each.error(f"{quoted(command.line)} is not a command of the kit", "commands")
         _check_step(each, step)
         each.finish()

@@ -252,6 +252,13 @@ class Doubled(nn.Module):
         return self.other(self.one(x) + x)
 
 
+class Unwritten(nn.Module):
+    """Fails without a word."""
+
+    def forward(self, x: torch.Tensor) -> torch.Tensor:
+        raise NotImplementedError
+
+
 @pytest.mark.parametrize(
     ("module", "reason"),
     [
@@ -262,6 +269,7 @@ class Doubled(nn.Module):
         (nn.Sequential(nn.Linear(9, 4)), "4 scores|4 actions|from 3"),
         (nn.Identity(), "no linear layer"),
         (Doubled(), "something else"),
+        (Unwritten(), "the 9 numbers"),
     ],
     ids=str,
 )

@@ -493,6 +493,15 @@ def test_an_executable_and_the_folder_for_logs() -> None:
     assert second["environment"] == {}
 
 
+@pytest.mark.parametrize(
+    "process", [{"cmd": []}, {"cmd": [" "]}, {"cmd": ["", "x"]}, {"cmd": ["", " "], "shell": True}]
+)
+def test_an_empty_command_is_refused(process: dict[str, Any]) -> None:
+    with pytest.raises(LaunchError, match="its command is empty"):
+        Play(ExecuteProcess(**process))
+    assert Play(ExecuteProcess(cmd=["", "x"], shell=True)).started[0]["title"] == "process"
+
+
 def write(file: Path, body: str) -> str:
     file.write_text(
         "from kit.ros.launch.actions import *\nfrom kit.ros.launch.settings import *\nfrom kit.ros.launch.entity import LaunchDescription\n"

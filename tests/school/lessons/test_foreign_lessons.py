@@ -73,9 +73,10 @@ def test_it_is_kept_apart_from_the_kits_lesson_of_that_name(lesson: Path) -> Non
     assert level > INTERACTIVE_LEVEL or not any(is_level_available(each) for each in type(level) if each)
 
 
-def test_only_commands_of_the_kit(lesson: Path) -> None:
+@pytest.mark.parametrize("line", ["curl example.org", "kitchen maps", '" "'])
+def test_only_commands_of_the_kit(line: str, lesson: Path) -> None:
     sheet = lesson / "lesson.yaml"
-    sheet.write_text(sheet.read_text().replace("line: kit maps", "line: curl example.org"))
+    sheet.write_text(sheet.read_text().replace("line: kit maps", f"line: {line}"))
     with pytest.raises(WorldError, match="is not a command of the kit"):
         read_lesson(lesson, is_foreign=True)
     done = CliRunner().invoke(main, ["lesson", "--check", str(lesson)])
