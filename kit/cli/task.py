@@ -14,8 +14,6 @@ from kit.cli.existing_path import ExistingPath
 from kit.cli.output_file import OutputFile
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
-from kit.host.sandbox.probe import highest_level_up_to
-from kit.host.sandbox.sandbox_config import Level
 from kit.learning.authoring.new_task import NewTaskError, new_task_file
 from kit.learning.authoring.task_archive import TaskArchiveError, pack_task, unpack_task
 from kit.learning.authoring.task_check import check_task
@@ -102,8 +100,7 @@ def check(task: str) -> None:
         assert found.file is not None  # every task is a file
         check_task(read_task(found.file))
         if found.reward_file is not None:
-            # Who checks a task may have it from somebody else.
-            check_reward(found.reward_file, found, highest_level_up_to(max(Level)))
+            check_reward(found.reward_file, found)
         cases = len(found.map_cases())
         place = shown if shown != task else found.file
         click.echo(f"{place}: valid, version {found.version}; {counted(cases, 'case')}")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -19,6 +20,7 @@ import numpy as np
 
 from kit.part_file import BeingWrittenError, lock_part, part_path, parts_in, path_of_part, unused_path
 from kit.run.recording import (
+    MAX_RECORDED_BYTES,
     NOTHING,
     Recorder,
     Recording,
@@ -31,6 +33,8 @@ from kit.workspace import check_writable, is_special
 
 INTERVAL_S: Final = 0.5
 """After this long what was recorded is written [s]."""
+MAX_PART_BYTES: Final = 4 * MAX_RECORDED_BYTES
+"""Bytes of what a killed run has left."""
 
 
 class RecordingFile:
@@ -143,6 +147,8 @@ def _restore_part(part: Path, wanted: Path | None) -> str:
     file = path_of_part(part)
     try:
         with lock_part(part, file) as lines:
+            if lines.seek(0, os.SEEK_END) > MAX_PART_BYTES:  # somebody else's
+                return ""
             lines.seek(0)
             recording = _read_recording(lines)
             if recording is None and part.stat().st_size:  # somebody else's
@@ -165,7 +171,7 @@ def _read_recording(lines: BinaryIO) -> Recording | None:
     """What was recorded, to the last line that is whole; None where it is no recording."""
     header: dict[str, Any] | None = None
     poses, counts = [np.empty((0, 3))], [np.empty(0, np.int64)]
-    with suppress(ValueError, KeyError, TypeError):  # the last line was being written
+    with suppress(ValueError, KeyError, TypeError, RecursionError):  # the last line was being written
         for line in lines:
             entry = json.loads(line)
             if header is None:

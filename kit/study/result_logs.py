@@ -8,7 +8,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
-from kit.line_log import LineLog
+from kit.line_log import MAX_READ_BYTES, LineLog
+from kit.plain_files import read_plain_file
 from kit.study.printed_tables import (
     PrintedTable,
 )
@@ -74,7 +75,7 @@ def find_recorded_results(
 def read_recorded_result(file: Path) -> RecordedResult | None:
     """None if there is no such file. RecordedResultError; a last line that was cut off is left out."""
     try:
-        lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+        lines = read_plain_file(file, MAX_READ_BYTES).decode().splitlines(keepends=True)
     except FileNotFoundError:
         return None
     except (OSError, UnicodeDecodeError) as error:
@@ -120,7 +121,7 @@ def _read_line(file: Path, number: int, line: str) -> Event:
             raise ValueError("a number is not finite")
         if any(reached > test.episodes for reached in test.reached.values()):
             raise ValueError("more successes than episodes")
-    except (ValueError, TypeError, KeyError, AttributeError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError) as error:
         raise RecordedResultError(
             f"{file}, line {number}: no event of a study ({error}). Delete the line or the file."
         ) from None

@@ -59,6 +59,69 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "a reward in somebody else's run, with one's own rights",
+        'kit/learning/tasks/student_reward.py',
+        'level=highest_level_up_to(max(Level)))',
+        'level=Level.LIMITED)',
+        'learning/training/test_hostile_runs.py::test_a_reward_in_somebody_elses_run_does_not_run_with_ones_rights',
+    ),
+    Control(
+        "a controller that somebody else's run imitates, with one's own rights",
+        'kit/learning/training/controller_demonstrator.py',
+        'INTERACTIVE_LEVEL if is_kits else highest_level_up_to(max(Level))',
+        'INTERACTIVE_LEVEL',
+        'learning/training/test_hostile_runs.py::test_a_controller_that_somebody_elses_run_imitates_does_not_run_with_ones_rights',
+    ),
+    Control(
+        'a checkpoint that counts below nothing',
+        'kit/learning/training/checkpoint_file.py',
+        '    if not (len(text) < 20 and 0 <= int(text) <= MAX_NUMBER):\n',
+        '    if text is None:\n',
+        'learning/training/test_hostile_runs.py::test_numbers_that_no_learner_has_are_no_checkpoint',
+    ),
+    Control(
+        'a replay buffer with actions that there are not',
+        'kit/learning/training/checkpoint_file.py',
+        '    if len(found) and not (found.min() >= 0 and found.max() < count):\n',
+        '    if found is None:\n',
+        'learning/training/test_hostile_runs.py::test_arrays_that_no_learner_has_are_no_checkpoint',
+    ),
+    Control(
+        "settings of somebody else's run that repeat without end",
+        'kit/learning/training/presets.py',
+        'most = MAX_REPEATS if name in REPEATS else MAX_COUNT',
+        'most = MAX_COUNT',
+        'learning/training/test_hostile_runs.py::test_settings_that_take_any_memory_or_never_look_are_refused',
+    ),
+    Control(
+        "settings of somebody else's run that take any memory",
+        'kit/learning/training/presets.py',
+        '            if numbers * 4 > MAX_HELD_BYTES:\n',
+        '            if numbers < 0:\n',
+        'learning/training/test_hostile_runs.py::test_settings_that_take_any_memory_or_never_look_are_refused',
+    ),
+    Control(
+        'events without end',
+        'kit/line_log.py',
+        '            if skips := size - self._offset > MAX_READ_BYTES:\n',
+        '            if skips := size < 0:\n',
+        'learning/training/test_hostile_runs.py::test_events_without_end_are_read_at_their_end',
+    ),
+    Control(
+        'an event that is longer than any',
+        'kit/line_log.py',
+        '                if is_whole and not skips:\n',
+        '                if not skips:\n',
+        'learning/training/test_hostile_runs.py::test_a_line_that_is_too_long_is_passed_over_and_cut_off_nowhere',
+    ),
+    Control(
+        "a lock of somebody else's that names a process of one's own",
+        'kit/learning/training/training_sweep.py',
+        'if process > 1 and holds_open(process, self.folder / LOCK_FILE):',
+        'if process > 1:',
+        'learning/training/test_hostile_runs.py::test_a_sweep_of_somebody_elses_ends_no_process_of_ones_own',
+    ),
+    Control(
         "a link in somebody else's run to a file of one's own",
         "kit/plain_files.py",
         "elif not entry.is_file(follow_symlinks=False):",
@@ -342,9 +405,9 @@ CONTROLS: Final = (
     ),
     Control(
         "a program that a policy's task names, with one's own rights",
-        "kit/learning/policies/evaluation.py",
-        "    with StudentReward(file, level=highest_level_up_to(max(Level))) as reward:",
-        "    with StudentReward(file) as reward:",
+        "kit/learning/tasks/student_reward.py",
+        "level=highest_level_up_to(max(Level)))",
+        "level=Level.LIMITED)",
         "learning/policies/test_hostile_files.py::test_a_policy_names_no_program_that_runs_with_ones_rights",
     ),
     Control(

@@ -12,8 +12,6 @@ from threadpoolctl import threadpool_limits
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.document.html import table_to_html
-from kit.host.sandbox.probe import highest_level_up_to
-from kit.host.sandbox.sandbox_config import Level
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
@@ -337,8 +335,7 @@ def evaluate_on(
     file = task.reward_file
     if file is None or not metric_parameters(file):
         return Evaluator(task).test(policy, episodes, seed, greedy=greedy)
-    # The policy may be somebody else's, and so the task and the program that it names.
-    with StudentReward(file, level=highest_level_up_to(max(Level))) as reward:
+    with StudentReward(file) as reward:
         return Evaluator(task, reward, counts_metrics=True).test(policy, episodes, seed, greedy=greedy)
 
 

@@ -31,7 +31,7 @@ from kit.learning.tasks.disturbances import (
     UniformRange,
 )
 from kit.learning.tasks.learning_task import LearningTask
-from kit.line_log import LineLog
+from kit.line_log import LineLog, LineReader
 from kit.plain_text import quoted, suggestion, without_formula
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder
@@ -159,10 +159,12 @@ class PolicySweep:
 
     def _read_journal(self) -> dict[str, dict[str, Any]]:
         found: dict[str, dict[str, Any]] = {}
-        if self._journal is None or not self._journal.exists():
+        if self._journal is None:
             return found
-        for line in self._journal.read_text(errors="replace").splitlines():
-            with suppress(ValueError, TypeError, KeyError):  # the last line of a sweep that was killed
+        for line in LineReader(self._journal).read_new():
+            with suppress(
+                RecursionError, ValueError, TypeError, KeyError
+            ):  # the last line of a sweep that was killed
                 entry = json.loads(line)
                 if entry["key"] == self._key:
                     SweepPoint("", 0.0, **entry["counts"])

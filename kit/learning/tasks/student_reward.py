@@ -22,7 +22,8 @@ from typing import Any, Self
 import numpy as np
 
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
+from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.learning.tasks.transition import TRANSITION_FIELDS, Array, Transition
 from kit.plain_files import read_plain_file
@@ -108,6 +109,8 @@ def _checked_parameters(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
 class StudentReward:
     """The file's reward as a ``RewardFunction``. Use as a context manager, or ``close`` it.
 
+    It runs at the highest level that the machine has: a task, a run or a policy that names it may be somebody else's.
+
     RewardFileError for a file that cannot be called; StudentCodeError when the student's code fails, here or in a call.
     """
 
@@ -117,14 +120,13 @@ class StudentReward:
         *,
         seed: int = 0,
         original: Path | None = None,
-        level: Level = INTERACTIVE_LEVEL,
     ) -> None:
         """``original``: the student's own file where ``file`` is a copy of it; failures name that one."""
         self._names = reward_parameters(file)
         self._metrics = metric_parameters(file)
         self._file, self._original = file, original or file
         with self._named_failures():
-            self._functions = StudentFunctions(file, seed=seed, level=level)
+            self._functions = StudentFunctions(file, seed=seed, level=highest_level_up_to(max(Level)))
 
     def __call__(self, transition: Transition) -> Array:
         """(n,) rewards of n worlds."""

@@ -13,6 +13,13 @@ LIMITS: Final = ("value_limit",)
 """Settings that may be infinite."""
 MAX_COUNT: Final = 1_000_000_000
 """The largest number of a setting that counts something."""
+REPEATS: Final = (
+    "n_steps", "n_epochs", "train_freq", "gradient_steps", "n_delta", "n_top", "n_eval_episodes", "rounds",
+)  # fmt: skip
+"""Settings that say how often something is done before a learner looks whether it is to stop."""
+MAX_REPEATS: Final = 100_000
+MAX_HELD_BYTES: Final = 4 << 30
+"""Bytes of what a learner holds: a rollout or a replay buffer, a batch of it, its changed networks."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,13 +13,13 @@ itself: they grow without end. Here no exponential overflows anyway: the largest
 from __future__ import annotations
 
 import io
-import json
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.learning.policies.policy import ActionSampling, Policy, action_counts, task_interface
@@ -27,6 +27,7 @@ from kit.learning.policies.policy_network import Activation, LinearLayer, Policy
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithm_settings import LinearSchedule, ReplayParams
 from kit.learning.training.algorithms import Algorithm
+from kit.learning.training.checkpoint_file import MAX_NUMBER, LearnerCounts, check_actions, check_rows
 from kit.learning.training.deep import LEARNING_RATE_FACTOR, EpisodeReporter
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import Preset
@@ -95,12 +96,23 @@ class ReplayBuffer:
         np.savez(file, np.array(self._added), *(np.asarray(array)[: self.filled] for array in self._arrays))
         return file.getvalue()
 
-    def load(self, data: bytes) -> None:
-        """Raises ValueError and KeyError for anything else."""
+    def load(self, data: bytes, actions: int) -> None:
+        """Reads what ``save`` returned. Raises ValueError and KeyError for anything else, and where an action is none of so
+        many."""
         with np.load(io.BytesIO(data), allow_pickle=False) as stored:
-            self._added = int(stored["arr_0"])
-            for number, name in enumerate(ReplayBatch._fields, start=1):
-                getattr(self._arrays, name)[: self.filled] = stored[f"arr_{number}"]
+            added = int(stored["arr_0"])
+            rows = [
+                check_rows(stored[f"arr_{number}"], own) for number, own in enumerate(self._fields(), start=1)
+            ]
+        if not 0 <= added <= MAX_NUMBER or {len(each) for each in rows} != {min(added, self._size)}:
+            raise ValueError("a replay buffer with other rows than it counts")
+        check_actions(ReplayBatch(*rows).actions, actions)
+        self._added = added
+        for own, values in zip(self._fields(), rows, strict=True):
+            own[: len(values)] = values
+
+    def _fields(self) -> list[NDArray[Any]]:
+        return list(self._arrays._asdict().values())
 
 
 class QNetwork:
@@ -287,29 +299,27 @@ class BoltzmannLearner:
     def save(self) -> dict[str, bytes]:
         file = io.BytesIO()
         np.savez(file, **self._arrays())  # type: ignore[arg-type]  # numpy's stub takes the names for its own options
-        counts = {
-            "algorithm": self._algorithm.name,
-            "steps": self._steps,
-            "updates": self._network.updates,
-            "slower": self._rate_factor,
-            "largest": self._env.recent.save(),
-        }
+        counts = LearnerCounts(
+            self._algorithm.name,
+            self._steps,
+            self._rate_factor,
+            self._network.updates,
+            largest=self._env.recent.save(),
+        )
         return {
-            "learner.json": json.dumps(counts).encode(),
+            **counts.pack(),
             "network.npz": file.getvalue(),
             "replay.npz": self._buffer.save(),
         }
 
     def load(self, parts: Mapping[str, bytes]) -> None:
-        counts = json.loads(parts["learner.json"])
-        if counts["algorithm"] != self._algorithm.name:
-            raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
+        counts = LearnerCounts.unpack(parts, self._algorithm.name)
         with np.load(io.BytesIO(parts["network.npz"]), allow_pickle=False) as stored:
             for name, array in self._arrays().items():
                 if stored[name].shape != array.shape or not np.isfinite(stored[name]).all():
                     raise ValueError(f"{name} does not fit the network")
                 array[:] = stored[name]
-        self._buffer.load(parts["replay.npz"])
-        self._steps, self._network.updates = int(counts["steps"]), int(counts["updates"])
-        self._rate_factor = float(counts["slower"])
-        self._env.recent.load(counts["largest"])
+        self._buffer.load(parts["replay.npz"], int(self._env.action_space.n))
+        self._steps, self._network.updates = counts.steps, counts.updates
+        self._rate_factor = counts.slower
+        self._env.recent.load(counts.largest)

@@ -14,8 +14,10 @@ from typing import Any, Final
 import numpy as np
 
 from kit.arrays import Float32Array, FloatArray
-from kit.controllers import ControllerFile, controller_title
+from kit.controllers import ControllerFile, controller_title, kit_controllers
 from kit.geometry import Pose
+from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.learning_task import LearningTask
@@ -70,6 +72,9 @@ class ControllerDemonstrator:
     def __init__(self, file: Path, task: LearningTask) -> None:
         self._controller = ControllerFile(file.stem, file, controller_title(file))
         self._task = task
+        is_kits = file.resolve() in {each.file.resolve() for each in kit_controllers()}
+        # The run that names it may be somebody else's.
+        self._level = INTERACTIVE_LEVEL if is_kits else highest_level_up_to(max(Level))
 
     def demonstrate(self, policy: Policy | None, seed: int) -> Examples:
         """Its drives from the task's starts; or, given a policy, from places that the policy drives to.
@@ -91,7 +96,7 @@ class ControllerDemonstrator:
             seen = _take_over(observer, policy, seen, seed)
         names = task.robots_on(card)
         observations, twists = [], []
-        with Session(_scenario(task, card, names, observer), seed=seed) as session:
+        with Session(_scenario(task, card, names, observer), seed=seed, level=self._level) as session:
             session.drive_with(self._controller)
             session.wait_until_driven()
             listener = _CommandListener(session, names)

@@ -6,11 +6,13 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
+from kit.field_types import check_field_types
+from kit.host.job_executors import read_result
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
@@ -73,9 +75,15 @@ def crosstable_columns(sweep: TrainingSweep) -> tuple[CrosstableColumn, ...]:
 def _test_run(run: TrainingRun, config: RunConfig, episodes: int) -> CrosstableColumn:
     """The run's policy on all cases; tested once, then read."""
     file = run.folder / TEST_FILE
-    if file.exists():
-        stored: dict[str, Any] = json.loads(file.read_bytes())
-    else:
+    task = replace(config.choice, on=()).resolve()
+    cases = {case.name for _, case in task.map_cases()}
+    try:
+        stored = read_result(file)
+        check_field_types(CrosstableColumn, stored)
+        of_pairs = cases if task.robots > 1 else set()
+        if stored["shares"].keys() != cases or stored["adjacency"].keys() != of_pairs:
+            raise ValueError("a test on other cases")
+    except (OSError, ValueError, KeyError, TypeError):  # there is none, or one of somebody else's
         policy = run.policy()
         evaluator = Evaluator(replace(policy.trained_on, on=()).resolve())
         result = evaluator.test(policy, episodes, derive_seed(config.seed, "crosstable"))

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import io
-import json
 import math
 import warnings
 from collections.abc import Mapping
@@ -27,6 +26,7 @@ from kit.learning.policies.policy import Policy, action_counts, task_interface
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithm_settings import LinearSchedule, OnPolicyParams
 from kit.learning.training.algorithms import Algorithm
+from kit.learning.training.checkpoint_file import LearnerCounts, check_actions, check_rows
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.measures import RecentExperience
 from kit.learning.training.presets import Preset
@@ -210,6 +210,8 @@ class DeepLearner:
             }
             return {name: number for name, number in found.items() if math.isfinite(number)}
         recent = self._env.recent
+        if not len(recent.observations):  # it was resumed with no step to come
+            return {}
         policy = self.policy()
         scores = policy.model.scores(
             recent.observations, np.zeros((len(recent.observations), 2, 0), np.float32)
@@ -239,29 +241,28 @@ class DeepLearner:
         self._rate_factor *= LEARNING_RATE_FACTOR
 
     def save(self) -> dict[str, bytes]:
-        counts = {
-            "algorithm": self._algorithm.name,
-            "steps": self.steps,
-            "updates": int(self._model._n_updates),
-            "slower": self._rate_factor,
-            "largest": self._env.recent.save(),
-        }
-        parts = {"learner.json": json.dumps(counts).encode(), "parameters.npz": self.snapshot()}
+        counts = LearnerCounts(
+            self._algorithm.name,
+            self.steps,
+            self._rate_factor,
+            int(self._model._n_updates),
+            largest=self._env.recent.save(),
+        )
+        parts = {**counts.pack(), "parameters.npz": self.snapshot()}
         if self._algorithm.family == "replay":
             parts["replay.npz"] = _pack_replay_buffer(self._model.replay_buffer)
         return parts
 
     def load(self, parts: Mapping[str, bytes]) -> None:
-        counts = json.loads(parts["learner.json"])
-        if counts["algorithm"] != self._algorithm.name:
-            raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
+        counts = LearnerCounts.unpack(parts, self._algorithm.name)
         self._set_parts(parts["parameters.npz"])
-        self._model.num_timesteps = int(counts["steps"])
-        self._model._n_updates = int(counts["updates"])
-        self._rate_factor = float(counts["slower"])
-        self._env.recent.load(counts["largest"])
+        self._model.num_timesteps = counts.steps
+        self._model._n_updates = counts.updates
+        self._rate_factor = counts.slower
+        self._env.recent.load(counts.largest)
         if "replay.npz" in parts:
-            _unpack_replay_buffer(self._model.replay_buffer, parts["replay.npz"])
+            actions = max(action_counts(self._model.action_space), default=None)
+            _unpack_replay_buffer(self._model.replay_buffer, parts["replay.npz"], actions)
 
 
 REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
@@ -276,12 +277,18 @@ def _pack_replay_buffer(buffer: Any) -> bytes:
     return file.getvalue()
 
 
-def _unpack_replay_buffer(buffer: Any, data: bytes) -> None:
+def _unpack_replay_buffer(buffer: Any, data: bytes, actions: int | None) -> None:
+    """``actions``: how many there are to choose from; None if they are continuous."""
     with np.load(io.BytesIO(data), allow_pickle=False) as stored:
         pos, full = stored["arr_0"].tolist()
-        if not 0 <= pos < buffer.buffer_size:
+        if type(pos) is not int or not 0 <= pos < buffer.buffer_size:
             raise ValueError("a place outside its replay buffer")
         for number, name in enumerate(REPLAY_ARRAYS, start=1):
-            values = stored[f"arr_{number}"]
-            getattr(buffer, name)[: len(values)] = values
+            own = getattr(buffer, name)
+            values = check_rows(stored[f"arr_{number}"], own)
+            if len(values) != (buffer.buffer_size if full else pos):
+                raise ValueError("a replay buffer with other rows than it counts")
+            if name == "actions" and actions is not None:
+                check_actions(values, actions)
+            own[: len(values)] = values
     buffer.pos, buffer.full = pos, bool(full)

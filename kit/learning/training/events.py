@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Literal, Self, TypeAlias
 
 from kit.field_types import check_field_types
-from kit.line_log import LineLog, whole_lines
+from kit.line_log import LineLog, LineReader
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +125,11 @@ class EventWriter:
 
     def __init__(self, file: Path) -> None:
         self._file = file.open("a+b")
-        self._log = LineLog(self._file)
+        try:
+            self._log = LineLog(self._file)
+        except OSError:
+            self._file.close()
+            raise
 
     def write(self, event: TrainingEvent) -> None:
         """OSError if the disk is full; nothing of the event stands in the file then."""
@@ -142,24 +146,15 @@ class EventWriter:
 
 
 class EventReader:
-    """Reads a run's events as they come, each once."""
+    """Reads a run's events as they come, each once; of a file without end its newest."""
 
     def __init__(self, file: Path, *, from_now: bool = False) -> None:
-        """``from_now``: leave out what stands in the file already."""
-        self._file = file
-        self._offset = whole_lines(file.read_bytes()) if from_now and file.exists() else 0
+        """``from_now``: leave out what stands in the file already. Raises OSError."""
+        self._lines = LineReader(file, from_now=from_now)
 
     def read_new(self) -> Iterator[TrainingEvent]:
-        """Returns the events written since the last call; none while there is no file."""
-        try:
-            with self._file.open("rb") as file:
-                file.seek(self._offset)
-                data = file.read()
-        except FileNotFoundError:
-            return
-        whole = whole_lines(data)
-        self._offset += whole
-        for line in data[:whole].splitlines():
+        """Returns the events written since the last call; none while there is no file. Raises OSError."""
+        for line in self._lines.read_new():
             event = decode_event(line)
             if event is not None:
                 yield event

@@ -8,7 +8,6 @@ what it would have done there, and learns from all examples together (Ross, Gord
 from __future__ import annotations
 
 import io
-import json
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -24,6 +23,7 @@ from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithm_settings import ImitationParams, LinearSchedule
 from kit.learning.training.algorithms import Algorithm
+from kit.learning.training.checkpoint_file import LearnerCounts, check_actions, check_rows
 from kit.learning.training.demonstrations import DemonstrationError, Demonstrator, Examples, join_examples
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import Preset
@@ -153,28 +153,32 @@ class ImitationLearner:
     def save(self) -> dict[str, bytes]:
         examples = io.BytesIO()
         known = join_examples(self._examples) if self._examples else None
-        counts = {
-            "algorithm": self._algorithm.name,
-            "steps": self.steps,
-            "rounds": self._rounds,
-            "slower": self._rate_factor,
-        }
-        parts = {"learner.json": json.dumps(counts).encode(), "parameters.npz": pack_parts(self._parts())}
+        counts = LearnerCounts(self._algorithm.name, self.steps, self._rate_factor, rounds=self._rounds)
+        parts = {**counts.pack(), "parameters.npz": pack_parts(self._parts())}
         if known is not None:
             np.savez(examples, observations=known.observations, actions=known.actions)
             parts["examples.npz"] = examples.getvalue()
         return parts
 
     def load(self, parts: Mapping[str, bytes]) -> None:
-        counts = json.loads(parts["learner.json"])
-        if counts["algorithm"] != self._algorithm.name:
-            raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
+        counts = LearnerCounts.unpack(parts, self._algorithm.name)
         unpack_parts(self._parts(), parts["parameters.npz"])
-        self.steps, self._rounds = int(counts["steps"]), int(counts["rounds"])
-        self._rate_factor = float(counts["slower"])
+        self.steps, self._rounds, self._rate_factor = counts.steps, counts.rounds, counts.slower
         if "examples.npz" in parts:
             with np.load(io.BytesIO(parts["examples.npz"]), allow_pickle=False) as stored:
-                self._examples = [Examples(stored["observations"], stored["actions"])]
+                self._examples = [self._check_examples(Examples(stored["observations"], stored["actions"]))]
+
+    def _check_examples(self, found: Examples) -> Examples:
+        """Those of a checkpoint. ValueError if they are not this task's."""
+        count, actions = len(found), np.atleast_2d(found.actions.T).T
+        columns = len(self._choices) or int(self._network[-1].out_features)
+        check_rows(found.observations, np.zeros((count, self._network[0].in_features), np.float32))
+        check_rows(actions, np.zeros((count, columns), np.int64 if self._choices else np.float32))
+        for number, choices in enumerate(self._choices):
+            check_actions(actions[:, number], choices)
+        if not count or len(actions) != count:
+            raise ValueError("examples without actions, or none")
+        return found
 
 
 def _make_network(preset: Preset, task: LearningTask, outputs: int) -> nn.Sequential:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 from types import MappingProxyType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -20,6 +21,9 @@ from kit.learning.training.algorithm_settings import (
     LEARNING_RATE,
     LIMITS,
     MAX_COUNT,
+    MAX_HELD_BYTES,
+    MAX_REPEATS,
+    REPEATS,
     SHARES,
     ActorCriticReplayParams,
     AlgorithmSettings,
@@ -91,6 +95,23 @@ class Preset:
             found[LEARNING_RATE] = LinearSchedule
         return found
 
+    def check_size(self, inputs: int) -> None:
+        """Raises RunError where the numbers that a learner holds, of observations of so many ``inputs``, would take more than any
+        memory."""
+        counts = {each.name: getattr(self.settings, each.name) or 0 for each in fields(self.settings)}
+        held = {
+            "n_steps": self.worlds * counts.get("n_steps", 0) * inputs,
+            "buffer_size": 2 * counts.get("buffer_size", 0) * inputs,
+            "batch_size": 2 * counts.get("batch_size", 0) * inputs,
+            "n_delta": counts.get("n_delta", 0) * sum(a * b for a, b in pairwise((inputs, *self.layers))),
+        }
+        for name, numbers in held.items():
+            if numbers * 4 > MAX_HELD_BYTES:
+                raise RunError(
+                    f"{name}={counts[name]} with {self.worlds} worlds takes {numbers * 4 / 2**30:.0f} GiB of memory; a training "
+                    f"may take {MAX_HELD_BYTES >> 30}. Choose a smaller one, or fewer worlds."
+                )
+
     def learner_arguments(self) -> dict[str, Any]:
         """Returns the keyword arguments of the learner's class, schedules as their initial values where it takes no schedule."""
         values = {each.name: getattr(self.settings, each.name) for each in fields(self.settings)}
@@ -107,8 +128,9 @@ class Preset:
 def _checked_setting(name: str, number: float, kind: type) -> int | float | LinearSchedule:
     """The number as its setting takes it."""
     if kind is int:
-        if not (1 <= number <= MAX_COUNT and number == int(number)):
-            raise RunError(f"{name} is a whole number from 1 to {MAX_COUNT:,}, not {number:g}.")
+        most = MAX_REPEATS if name in REPEATS else MAX_COUNT
+        if not (1 <= number <= most and number == int(number)):
+            raise RunError(f"{name} is a whole number from 1 to {most:,}, not {number:g}.")
         return int(number)
     if math.isinf(number) and name not in LIMITS:
         raise RunError(f"{name} is a finite number.")

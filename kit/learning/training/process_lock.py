@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import fcntl
+import os
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, Final
 
@@ -40,6 +41,18 @@ def is_locked(file: Path) -> bool:
         return False
     except OSError:  # it is locked
         return True
+
+
+def holds_open(process: int, file: Path) -> bool:
+    """Whether a process has the file open; True where the system does not tell. Raises OSError where there is no such process."""
+    if not Path("/proc/self/fd").exists():
+        return True
+    wanted = file.stat()
+    for opened in Path(f"/proc/{process}/fd").iterdir():
+        with suppress(FileNotFoundError):  # it has closed it meanwhile
+            if os.path.samestat(opened.stat(), wanted):
+                return True
+    return False
 
 
 def _lock(lock: BinaryIO) -> bool:

@@ -9,7 +9,6 @@ from typing import Final
 
 import numpy as np
 
-from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.learning.authoring.task_check import check_task
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.case_arrays import CaseArrays
@@ -38,6 +37,7 @@ def check_run_config(config: RunConfig) -> None:
     if algorithm.needs_torch:
         require_learn_extra()
     check_settings(config)
+    resolve_preset(config).check_size(task.observation.size * task.robots)
     CaseArrays(task)
     if config.mirrored:
         TaskMirror(task)
@@ -60,13 +60,13 @@ CHECKED_STEPS: Final = 3
 CHECKED_WORLDS: Final = 8
 
 
-def check_reward(file: Path, task: LearningTask, level: Level = INTERACTIVE_LEVEL) -> None:
+def check_reward(file: Path, task: LearningTask) -> None:
     """Calls a file's reward and metrics in a process of their own: for the first steps of random drives, and for such
     steps as if each had ended the episode in one of its ways, so that what is said of the end is run too.
 
     RewardFileError where the file cannot be called, StudentCodeError where its code fails: with the file and the line.
     """
-    with StudentReward(file, level=level) as reward:
+    with StudentReward(file) as reward:
         batch = BatchEnv(task, CHECKED_WORLDS, reward=reward)
         batch.action_space.seed(0)
         batch.reset()

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Literal
 
-from kit.field_types import check_field_types
+from kit.field_types import MAX_WHOLE, check_field_types
 from kit.learning.tasks.task_spec import TaskSpec
 
 PresetName = Literal["kit", "seed", "seed-text"]
@@ -95,8 +95,13 @@ class RunConfig:
             config = cls(choice, **{**plain, "imitate": tuple(data["imitate"])}, settings=settings)
         except (TypeError, KeyError, AttributeError) as error:
             raise ValueError(f"not the configuration of a run: {error}") from None
-        if config.seed < 0 or any(count is not None and count < 1 for count in (config.steps, config.worlds)):
-            raise ValueError(f"seed {config.seed}, {config.steps} steps, {config.worlds} worlds")
+        counts = (config.steps, config.worlds)
+        if not 0 <= config.seed <= MAX_WHOLE or any(
+            each is not None and not 1 <= each <= MAX_WHOLE for each in counts
+        ):
+            raise ValueError("a seed, steps or worlds that are too many, or none")
+        if not all(each is None or 0.0 <= each < math.inf for each in (config.goal, config.learning_rate)):
+            raise ValueError(f"goal {config.goal}, learning rate {config.learning_rate}")
         if (config.worlds or 1) > MAX_WORLDS:
             raise ValueError(f"{config.worlds} worlds; at most {MAX_WORLDS:,} are simulated at once")
         return config

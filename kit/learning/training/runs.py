@@ -33,6 +33,8 @@ from kit.workspace import write_atomically
 
 MAX_CONFIG_BYTES: Final = 16 << 20
 """Bytes of ``config.json``: it may hold a task's whole text."""
+MAX_COMMAND_BYTES: Final = 100
+"""Bytes of ``control``."""
 LOG_END_BYTES: Final = 64 << 10
 """Bytes at the end of the log, in which its last line is."""
 
@@ -127,7 +129,7 @@ class TrainingRun:
     def read_command(self) -> TrainingCommand:
         """Returns the newest command."""
         with suppress(OSError, UnicodeDecodeError):
-            text = (self.folder / "control").read_text().strip()
+            text = read_plain_file(self.folder / "control", MAX_COMMAND_BYTES).decode().strip()
             return next((order for order in get_args(TrainingCommand) if order == text), "go")
         return "go"
 

@@ -9,7 +9,6 @@ the value of the next action *really taken*, exploration included: near a wall i
 from __future__ import annotations
 
 import io
-import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
@@ -26,6 +25,7 @@ from kit.learning.policies.policy_network import ActionValueTable
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithm_settings import TabularParams
 from kit.learning.training.algorithms import Algorithm
+from kit.learning.training.checkpoint_file import LearnerCounts, check_rows
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.measures import RecentExperience
 from kit.learning.training.presets import Preset
@@ -147,26 +147,19 @@ class TableLearner(ABC):
     def save(self) -> dict[str, bytes]:
         values = io.BytesIO()
         np.save(values, self._values)
-        counts = {
-            "algorithm": self._algorithm.name,
-            "steps": self._steps,
-            "slower": self._rate_factor,
-            "largest": self._recent.save(),
-        }
-        return {"learner.json": json.dumps(counts).encode(), "values.npy": values.getvalue()}
+        counts = LearnerCounts(
+            self._algorithm.name, self._steps, self._rate_factor, largest=self._recent.save()
+        )
+        return {**counts.pack(), "values.npy": values.getvalue()}
 
     def load(self, parts: Mapping[str, bytes]) -> None:
-        counts = json.loads(parts["learner.json"])
-        if counts["algorithm"] != self._algorithm.name:
-            raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
+        counts = LearnerCounts.unpack(parts, self._algorithm.name)
         values = np.load(io.BytesIO(parts["values.npy"]), allow_pickle=False)
-        if (values.shape, values.dtype) != (self._values.shape, self._values.dtype):
-            raise ValueError(f"values of shape {values.shape} and type {values.dtype}")
-        if not (np.abs(values) <= np.finfo(np.float32).max).all():  # a policy keeps them as such
-            raise ValueError("a value that is not finite")
-        self._values = values
-        self._steps, self._rate_factor = int(counts["steps"]), float(counts["slower"])
-        self._recent.load(counts["largest"])
+        if len(values) != len(self._values) or not (np.abs(values) <= np.finfo(np.float32).max).all():
+            raise ValueError("values of another table, or beyond those that a policy keeps")
+        self._values = check_rows(values, self._values)
+        self._steps, self._rate_factor = counts.steps, counts.slower
+        self._recent.load(counts.largest)
 
 
 class QLearning(TableLearner):

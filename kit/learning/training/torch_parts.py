@@ -21,6 +21,11 @@ from kit.learning.training.checkpoint_file import MAX_CHECKPOINT_BYTES
 
 TorchParts = Mapping[str, nn.Module | Optimizer | torch.Tensor]
 """What a learner has trained, by name. How its optimisers are set is no part of it: that is the preset's."""
+OPTIMIZER_STATES: Mapping[str, frozenset[str]] = {
+    "Adam": frozenset({"step", "exp_avg", "exp_avg_sq"}),
+    "RMSprop": frozenset({"step", "square_avg"}),
+}
+"""What an optimiser keeps for each parameter once it has made a step."""
 
 
 def pack_parts(parts: TorchParts) -> bytes:
@@ -41,7 +46,9 @@ def pack_parts(parts: TorchParts) -> bytes:
 def unpack_parts(parts: TorchParts, data: bytes) -> None:
     """Puts what was packed into parts that are built alike. Raises KeyError, ValueError and RuntimeError for what does not fit."""
     stored = {
-        name: torch.from_numpy(array) for name, array in unpack_arrays(data, MAX_CHECKPOINT_BYTES).items()
+        # In the order of memory that torch's own have: an optimiser's compiled code goes by that.
+        name: torch.from_numpy(np.asarray(array, order="C"))
+        for name, array in unpack_arrays(data, MAX_CHECKPOINT_BYTES).items()
     }
     for name, part in parts.items():
         if isinstance(part, torch.Tensor):
@@ -52,6 +59,8 @@ def unpack_parts(parts: TorchParts, data: bytes) -> None:
             for number, parameter in enumerate(parameters):
                 prefix = f"{name}/{number}/"
                 found = {key.removeprefix(prefix): stored[key] for key in stored if key.startswith(prefix)}
+                if found and found.keys() != OPTIMIZER_STATES[type(part).__name__]:
+                    raise ValueError(f"{name} lacks a state")
                 if any(
                     value.shape != (() if key == "step" else parameter.shape) for key, value in found.items()
                 ):

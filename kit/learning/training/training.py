@@ -9,6 +9,7 @@ import errno
 import json
 import math
 import time
+import traceback
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -20,6 +21,7 @@ from typing import Any, cast
 import numpy as np
 
 from kit.arrays import FloatArray
+from kit.field_types import check_field_types
 from kit.host.failure import StudentCodeError
 from kit.kernels.compilation_progress import PROGRESS
 from kit.learning.environment.batch import BatchEnv, RewardError
@@ -31,12 +33,19 @@ from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.curriculum import CasePractice, practices
-from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.reward import RewardFunction
 from kit.learning.tasks.student_reward import RewardFileError, StudentReward
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithm_settings import LinearSchedule
-from kit.learning.training.algorithms import Algorithm, UnsuitableAlgorithm, check_suits, find_algorithm
+from kit.learning.training.algorithms import (
+    Algorithm,
+    UnknownAlgorithm,
+    UnsuitableAlgorithm,
+    check_suits,
+    find_algorithm,
+)
+from kit.learning.training.checkpoint_file import read_numbers
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.events import (
     Evaluated,
@@ -62,6 +71,7 @@ from kit.learning.training.stopping_rules import (
     TrainUntilSure,
 )
 from kit.run.recording import RecordingError
+from kit.world.problems import WorldError
 
 PROGRESS_S = 0.5
 CHECKPOINT_S = 10.0
@@ -120,10 +130,10 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
     KeyboardInterrupt. Raises RunError if the run is damaged or busy, or the disk is full, and LearnExtraMissing.
     """
     config = run.config()
-    if find_algorithm(config.algorithm).needs_torch:
-        require_learn_extra()
     with run.lock(), _full_disk_as_run_error(run), EventWriter(run.events_file) as events:
         try:
+            if find_algorithm(config.algorithm).needs_torch:
+                require_learn_extra()
             with _student_reward(run, config) as reward, PROGRESS.told_by(_CompilationNotes(events).tell):
                 training = _TrainingLoop(run, config, events, reward, interrupted)
                 ended = training.run()
@@ -131,15 +141,23 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
             StudentCodeError,
             RewardError,
             RewardFileError,
+            UnknownTask,
+            WorldError,
             UnsupportedWorld,
+            UnknownAlgorithm,
             UnsuitableAlgorithm,
             DemonstrationError,
             RecordingError,
             PolicyError,
+            LearningFailed,
         ) as error:
             ended = _ended_by_failure(run, str(error))
         events.write(ended)
     return ended
+
+
+class LearningFailed(Exception):
+    """The learner's numbers cannot be reckoned with any more; the message says why, and what to do."""
 
 
 class _CompilationNotes:
@@ -250,7 +268,8 @@ class _TrainingLoop:
         self._assign_stage()
         stopped, reason = False, "all steps are done"
         try:
-            self._learner.learn(self._preset.steps, self)
+            with self._numbers_as_failure():
+                self._learner.learn(self._preset.steps, self)
             if self._learner.steps > self._evaluated_at:
                 self._evaluate(last=True)
             reason += self._describe_missed_goal()
@@ -264,6 +283,19 @@ class _TrainingLoop:
         return TrainingEnded(
             "stopped" if stopped else "finished", self._learner.steps, self._elapsed(), reason
         )
+
+    @contextmanager
+    def _numbers_as_failure(self) -> Iterator[None]:
+        """What a library raises where values have become too large, or arrays, as a failure that says so."""
+        try:
+            yield
+        except (ArithmeticError, MemoryError, ValueError, RuntimeError) as error:
+            traceback.print_exc()  # to the run's log
+            raise LearningFailed(
+                f"{self._config.algorithm} cannot go on ({str(error).partition(chr(10))[0][:200]}): with "
+                f"{self._config.preset_text} its numbers have become too large. Lower the learning rate, or the settings "
+                "that were changed."
+            ) from error
 
     def between_updates(self) -> None:
         now = time.monotonic()
@@ -427,7 +459,8 @@ class _TrainingLoop:
             return None
         parts, damage = loaded
         with self._odd_checkpoint_as_run_error():
-            state = json.loads(parts["training.json"])
+            state = read_numbers(parts["training.json"])
+            check_field_types(StoppingMemory, state["memory"])
             best = state["memory"]["best"]
             self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
             self._seconds, self._test_count = float(state["seconds"]), int(state["test_count"])
@@ -452,7 +485,8 @@ def make_learner(
     demonstrations: Sequence[Path] = (),
 ) -> Learner:
     """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on.
-    ``demonstrations``: files of those whom it imitates."""
+    ``demonstrations``: files of those whom it imitates. RunError where it would take more than any memory."""
+    preset.check_size(task.observation.size * task.robots)
     if algorithm.family == "imitation":
         from kit.learning.training.controller_demonstrator import (
             read_demonstrator,  # brings the simulator along

@@ -27,12 +27,12 @@ from kit.host.python_command import python_command
 from kit.learning.policies.evaluation import evaluate_on
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.process_lock import is_locked, process_lock
+from kit.learning.training.process_lock import holds_open, is_locked, process_lock
 from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_settings
 from kit.learning.training.run_folders import RunExists, create_run
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import train
-from kit.plain_files import foreign_part
+from kit.plain_files import foreign_part, read_plain_file
 from kit.workspace import make_private_folder, write_atomically
 
 ALL_CASES = "all"
@@ -107,10 +107,9 @@ class TrainingSweep(JobFolder):
         content = {"episodes": episodes, "runs": [config.as_dict() for config in frozen]}
         text = json.dumps(content, indent=1).encode()
         manifest = folder / "manifest.json"
-        known = json.loads(manifest.read_bytes()) if manifest.exists() else None
-        new = json.loads(text)
+        known, new = sweep._read_manifest() if manifest.exists() else None, json.loads(text)
         if known is not None and grows and known["runs"][: len(new["runs"])] == new["runs"]:
-            text, new = manifest.read_bytes(), {**new, "runs": known["runs"]}
+            text, new = json.dumps(known, indent=1).encode(), {**new, "runs": known["runs"]}
         elif known is not None and grows and new["runs"][: len(known["runs"])] == known["runs"]:
             known["runs"] = new["runs"]
         if known not in (None, new):
@@ -176,7 +175,10 @@ class TrainingSweep(JobFolder):
         """Ends the process that trains it; the training that runs leaves a checkpoint. Nothing if there is none."""
         if self.is_active:
             with suppress(OSError, ValueError):  # it has ended meanwhile
-                os.kill(int((self.folder / LOCK_FILE).read_text()), signal.SIGTERM)
+                process = int(read_plain_file(self.folder / LOCK_FILE, 20))
+                # The sweep may be somebody else's, and its lock name any process.
+                if process > 1 and holds_open(process, self.folder / LOCK_FILE):
+                    os.kill(process, signal.SIGTERM)
 
     @property
     def worker_command(self) -> list[str]:

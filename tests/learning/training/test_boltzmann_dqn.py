@@ -66,7 +66,7 @@ def test_the_buffer_keeps_the_last_steps_and_comes_back_from_a_file(dqn: ModuleT
     for number in range(8):
         buffer.add(dqn.ReplayBatch(*(array[number : number + 1] for array in steps)))
     again = dqn.ReplayBuffer(5, 5)
-    again.load(buffer.save())
+    again.load(buffer.save(), 3)
     assert again.filled == 5
     drawn = again.sample(np.random.default_rng(0), 200)
     assert set(drawn.rewards.tolist()) == set(steps.rewards[3:].tolist())
