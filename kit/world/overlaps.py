@@ -18,8 +18,9 @@ from kit.world.yaml_section import Section
 
 MAX_BODIES: Final = 10_000
 """Bodies of a world's models."""
-MAX_WALL_PAIRS: Final = 5_000_000
-"""Pairs of walls whose boxes overlap. With as many it takes about a tenth of a second to build the engine's tree."""
+MAX_WALL_PAIRS: Final = 20_000_000
+"""Pairs of walls whose boxes overlap. With as many it takes about a second to build the engine's tree; a checkerboard of as
+many pixels as a picture may have is one of them."""
 MAX_TOUCHED_WALLS: Final = 100_000
 """Pairs of a footprint and a wall whose boxes overlap."""
 MAX_FOOTPRINT_PAIRS: Final = 20_000

@@ -3,7 +3,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from kit.world.loading import load_world
 from kit.world.problems import WorldError
@@ -44,10 +46,10 @@ def _short_walls(count: int) -> Iterator[str]:
 @pytest.mark.parametrize(
     ("walls", "places", "model", "what"),
     [
-        pytest.param(lambda: ["0 0 4 4"] * 4000, [(30, 30)], ROBOT, "pairs of walls", id="one wall many times"),
-        pytest.param(lambda: _fan(4000), [(30, 30)], ROBOT, "pairs of walls", id="a fan of walls"),
+        pytest.param(lambda: ["0 0 4 4"] * 7000, [(30, 30)], ROBOT, "pairs of walls", id="one wall many times"),
+        pytest.param(lambda: _fan(7000), [(30, 30)], ROBOT, "pairs of walls", id="a fan of walls"),
         pytest.param(
-            lambda: [*_short_walls(30_000), *["0 0 4 4"] * 6000], [(30, 30)], ROBOT, "pairs of walls", id="among others"
+            lambda: [*_short_walls(30_000), *["0 0 4 4"] * 9000], [(30, 30)], ROBOT, "pairs of walls", id="among others"
         ),
         pytest.param(list, [(1, 1)] * 300, ROBOT, "pairs of footprints", id="robots on top of one another"),
         pytest.param(
@@ -95,3 +97,17 @@ def test_a_world_with_too_many_bodies_is_refused(tmp_path: Path) -> None:
     bodies = ", ".join(f"{{name: b{n}, footprints: []}}" for n in range(1200))
     with pytest.raises(WorldError, match="10,800 bodies"):
         load_world(_world(tmp_path, SQUARE, [(n, 1) for n in range(9)], model=f"bodies: [{bodies}]\n"))
+
+
+@pytest.mark.long
+def test_a_checkerboard_of_as_many_pixels_as_a_picture_may_have_is_read(tmp_path: Path) -> None:
+    """Its walls cross one another, which costs the engine a second, once."""
+    rows, columns = np.indices((4096, 4096))
+    Image.fromarray(np.where((rows + columns) % 2, 0, 254).astype(np.uint8)).save(tmp_path / "map.png")
+    sheet = "image: map.png\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\nnegate: 0\n"
+    (tmp_path / "map.yaml").write_text(sheet)
+    file = tmp_path / "world.yaml"
+    file.write_text("properties: {}\nlayers: [{name: solid, map: map.yaml}]\n")
+    (walls,) = (layer.walls for layer in load_world(file).layers)
+    assert walls is not None
+    assert len(walls.segments) > 2 * 4095
