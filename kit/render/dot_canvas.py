@@ -148,11 +148,11 @@ class DotCanvas:
         raster.draw_dots(self.grid, (rows, columns), role)
 
 
-def ring_dots(target: Disc, walls: Grid, camera: Camera, encoder: Encoder) -> raster.Dots:
+def ring_dots(target: Disc, wall_cells: BoolArray, camera: Camera, encoder: Encoder) -> raster.Dots:
     """The dots of a target's ring: the rim of the part of its disc that is in characters without a wall, so that the ring is
     closed and of dots everywhere. None where it would be smaller than the symbol in its middle, or that is in a wall.
 
-    ``walls``: (rows * down, columns * across), the camera's grid of walls alone.
+    ``wall_cells``: (rows, columns): the characters with a wall.
     """
     nothing = np.empty(0, dtype=np.intp)
     across, down = encoder.across, encoder.down
@@ -161,7 +161,7 @@ def ring_dots(target: Disc, walls: Grid, camera: Camera, encoder: Encoder) -> ra
     middle = camera.project(np.array((target.x, target.y)), across, down)
     if radius_y < LEAST_RING_ROWS * down or not (np.isfinite(middle).all() and math.isfinite(radius_x)):
         return nothing, nothing
-    height, width = walls.shape
+    height, width = wall_cells.shape[0] * down, wall_cells.shape[1] * across
     # About the middle of a dot, it is as round as dots can be. One more dot on each side shows where it leaves the picture.
     column, row = np.floor(middle)
     left, right = np.clip((column - radius_x - 1, column + radius_x + 2), -1, width + 1).astype(np.intp)
@@ -171,9 +171,9 @@ def ring_dots(target: Disc, walls: Grid, camera: Camera, encoder: Encoder) -> ra
     rows, columns = np.arange(top, bottom), np.arange(left, right)
     away_x, away_y = (columns - column) / (radius_x + 0.5), (rows - row) / (radius_y + 0.5)
     inside = away_x**2 + (away_y**2)[:, None] < 1.0
-    cells: BoolArray = walls.reshape(height // down, down, width // across, across).max(axis=(1, 3)) > 0
-    at = np.clip(rows // down, 0, len(cells) - 1)[:, None], np.clip(columns // across, 0, cells.shape[1] - 1)
-    inside &= ~cells[at]
+    last_row, last_column = wall_cells.shape[0] - 1, wall_cells.shape[1] - 1
+    at = np.clip(rows // down, 0, last_row)[:, None], np.clip(columns // across, 0, last_column)
+    inside &= ~wall_cells[at]
     parts = connected_parts(inside)
     here = parts[int(row) - top, int(column) - left]
     inside = (parts == here) & (here > 0)

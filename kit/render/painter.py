@@ -81,7 +81,7 @@ class Painter:
 
     def _ring(self, target: Disc, camera: Camera) -> raster.Dots:
         if target not in self._rings:
-            self._rings[target] = ring_dots(target, self._wall_grid, camera, self.encoder)
+            self._rings[target] = ring_dots(target, self._wall_cells, camera, self.encoder)
         return self._rings[target]
 
     def _is_coarse(self, scene: Scene, camera: Camera) -> bool:
@@ -100,10 +100,10 @@ class Painter:
             grid[self._floor_map.solid_dots(camera, across, down)] = Role.WALL
             self._wall_grid, self._walls, self._view = grid, scene.walls, view
             self._rings.clear()
-            walled = grid.reshape(camera.rows, down, camera.columns, across) == Role.WALL
-            self._wall_cells = walled.any(axis=(1, 3))
+            self._wall_cells = raster.drawn_cells(grid, across, down)
             if self.shaded:
                 self._floor = self._floor_map.cells(camera, grid, across, down)
+                walled = grid.reshape(camera.rows, down, camera.columns, across) == Role.WALL
                 self._solid = walled.mean(axis=(1, 3)) >= 0.5
         return self._wall_grid
 

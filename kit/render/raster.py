@@ -92,6 +92,20 @@ def filled_dots(corners: FloatArray, width: int, height: int) -> Dots:
     return rows.ravel()[inside], columns.ravel()[inside]
 
 
+def drawn_cells(grid: Grid, across: int, down: int) -> BoolArray:
+    """(rows, columns): the characters, of ``across`` x ``down`` dots, in which anything is drawn.
+
+    >>> drawn_cells(np.array([[0, 0, 0, 1], [0, 0, 0, 0]], dtype=np.uint8), 2, 2).tolist()
+    [[False, True]]
+    """
+    drawn = grid > 0
+    cells: BoolArray = drawn[::down, ::across].copy()
+    for row in range(down):
+        for column in range(across):
+            cells |= drawn[row::down, column::across]
+    return cells
+
+
 def close_gaps(grid: Grid, across: int, down: int, role: int) -> None:
     """Fills up to this many empty dots between two drawn ones of a column, and then of a row: in this order the
     corner between two walls is filled with them."""
