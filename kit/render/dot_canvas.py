@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 
-from kit.arrays import BoolArray, FloatArray
+from kit.arrays import BoolArray, FloatArray, IndexArray
 from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.encode import Encoder
@@ -47,9 +48,10 @@ class DotCanvas:
     def draw_points(self, points: FloatArray, role: Role) -> None:
         raster.draw_dots(self.grid, raster.point_dots(self.project(points), self._width, self._height), role)
 
-    def draw_hits(self, hits: FloatArray, surfaces: FloatArray) -> None:
+    def draw_hits(self, hits: FloatArray, surfaces: FloatArray, faces: BoolArray) -> None:
         """The points where rays end, and the lines between them on one surface. Where dots are fine enough to keep both
-        apart, a ray that ends on a wall lights up the wall itself."""
+        apart, a ray that ends on a wall lights up the wall itself. ``faces`` (rows, columns): characters of walls beside the
+        floor, which light up instead of those behind them, into which noise carries a ray's end; empty: no walls have any."""
         if self._encoder.down < 4:
             self.draw_points(hits, Role.HIT)
             return
@@ -63,12 +65,13 @@ class DotCanvas:
         raster.draw_dots(self.grid, (rows[~at_wall], columns[~at_wall]), Role.HIT)
         lit = (
             np.concatenate((cell_rows, lines[0] // down)),
-            slice(None),
             np.concatenate((cell_columns, lines[1] // across)),
         )
-        dots = cells[lit]
+        if faces.size:
+            lit = _at_faces(*lit, faces)
+        dots = cells[lit[0], :, lit[1]]
         dots[dots == Role.WALL] = Role.WALL_HIT
-        cells[lit] = dots
+        cells[lit[0], :, lit[1]] = dots
 
     def draw_cells(self, cells: SceneCells, marks_unknown: bool) -> BoolArray:
         """Cells that are occupied, as walls, and where ``marks_unknown``, a pattern of dots over those of which nothing is
@@ -196,3 +199,20 @@ def _heading_line(robot: SceneBody, camera: Camera, encoder: Encoder) -> FloatAr
     step = (ahead - front) / np.abs(ahead - front).max()  # one dot along the longer axis
     beyond = max(2.0, HEADING_LINE_SHARE * extent.width / camera.cell_width) * encoder.across
     return np.concatenate((start, front + step * beyond))[None]
+
+
+BESIDE: Final = np.array(((-1, 0), (1, 0), (0, -1), (0, 1), (0, -2), (0, 2)))
+"""Rows and columns to the characters beside one; a character is twice as high as wide."""
+
+
+def _at_faces(rows: IndexArray, columns: IndexArray, faces: BoolArray) -> tuple[IndexArray, IndexArray]:
+    """Characters, but for each that is no face of a wall those beside it that are, if there are any."""
+    behind = np.flatnonzero(~faces[rows, columns])
+    beside_rows = (rows[behind] + BESIDE[:, :1]).clip(0, len(faces) - 1)
+    beside_columns = (columns[behind] + BESIDE[:, 1:]).clip(0, faces.shape[1] - 1)
+    beside = faces[beside_rows, beside_columns]
+    replaced = behind[beside.any(axis=0)]
+    return (
+        np.concatenate((np.delete(rows, replaced), beside_rows[beside])),
+        np.concatenate((np.delete(columns, replaced), beside_columns[beside])),
+    )

@@ -21,6 +21,8 @@ from kit.render.sprites import SpriteLayer
 FINE_DOTS = 1.5
 """From this many dots on, walls may be half a character thick without closing a way that is open."""
 
+NO_FACES: BoolArray = np.empty((0, 0), dtype=bool)
+
 
 class Painter:
     """Draws scenes with one encoder. Keeps the walls as drawn last, and draws them again only when the
@@ -38,6 +40,8 @@ class Painter:
         self._floor_map: FloorMap | None = None
         self._floor: BoolArray = np.empty((0, 0), dtype=bool)
         self._solid: BoolArray = np.empty((0, 0), dtype=bool)
+        self._faces = NO_FACES
+        """Characters of walls beside the floor."""
         self._walls: FloatArray | None = None
         self._view: tuple[Camera, float] | None = None
         self._wall_grid = raster.empty_grid(0, 0)
@@ -58,7 +62,8 @@ class Painter:
             canvas.draw_lines(raster.polyline(stroke.points), nearest_pen_role(stroke.color))
         for number, trail in enumerate(scene.trails):
             canvas.draw_points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)])
-        canvas.draw_hits(scene.hits, seen_surfaces(scene.beams) if self.shaded else NO_LINES)
+        surfaces = seen_surfaces(scene.beams) if self.shaded else NO_LINES
+        canvas.draw_hits(scene.hits, surfaces, self._faces if scene.cells is None else NO_FACES)
         for target in scene.targets:
             canvas.draw_dots(self._ring(target, camera), Role.TARGET)
         for body in scene.bodies:
@@ -105,6 +110,7 @@ class Painter:
                 self._floor = self._floor_map.cells(camera, grid, across, down)
                 walled = grid.reshape(camera.rows, down, camera.columns, across) == Role.WALL
                 self._solid = walled.mean(axis=(1, 3)) >= 0.5
+                self._faces = self._wall_cells & _beside(self._floor & ~self._wall_cells)
         return self._wall_grid
 
 
@@ -135,3 +141,13 @@ def _draw_walls(walls: FloatArray, camera: Camera, passage: float, encoder: Enco
     raster.close_gaps(canvas.grid, across, down, Role.WALL)
     top, left = rim_y * encoder.down, rim_x * encoder.across
     return canvas.grid[top : top + camera.rows * encoder.down, left : left + camera.columns * encoder.across]
+
+
+def _beside(cells: BoolArray) -> BoolArray:
+    """The cells and those around them, corners too."""
+    padded = np.pad(cells, 1)
+    rows, columns = cells.shape
+    found: BoolArray = np.logical_or.reduce(
+        [padded[row : row + rows, column : column + columns] for row in range(3) for column in range(3)]
+    )
+    return found

@@ -225,6 +225,23 @@ def test_nothing_that_is_out_of_sight_is_drawn(encoder: Encoder) -> None:
     assert (frame.glyphs == BLANK).all()
 
 
+def test_noise_lights_no_wall_behind_the_face_that_the_laser_sees() -> None:
+    """A wall three characters thick, whose face in the room rays end on, some of them a little inside of it."""
+    walls = box_walls(((0, 0, 2.4, 0.2), (0, 1.0, 2.4, 1.2), (0, 0.2, 0.2, 1.0), (2.2, 0.2, 2.4, 1.0)))
+    pose = Pose(1.2, 0.6, 0.0)
+    hits = scan(walls, pose)
+    away = hits - np.array(pose[:2])
+    noisy = hits + away / np.hypot(*away.T)[:, None] * np.tile((0.0, 0.08), len(hits))[: len(hits), None]
+    beams = np.column_stack((np.full_like(noisy, pose[:2]), noisy))
+    scene = Scene(walls, (robot(pose),), noisy, beams)
+    camera = Camera.fit(scene.bounds, 60, 20)
+    lit = Painter(BrailleEncoder(), shaded=True).paint(scene, camera).fg == Role.WALL_HIT
+    assert lit.sum() > 50
+    left, top, right, bottom = camera.project(np.array(((0.2, 1.0), (2.2, 0.2)))).ravel()
+    lit[math.ceil(top) - 1 : math.floor(bottom) + 1, math.ceil(left) - 1 : math.floor(right) + 1] = False
+    assert not lit.any()
+
+
 @every_encoder
 def test_what_is_nowhere_is_left_out(encoder: Encoder) -> None:
     nan = math.nan
