@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -1137,14 +1138,25 @@ class Seen(Enum):
     SKIPPED = "not on this machine"
 
 
-def see(control: Control, folder: Path) -> Seen:
-    """Runs the control's test in a copy of the project, with its defence and without. ``folder``: an empty one, for the copy."""
+@contextmanager
+def project_copy() -> Iterator[Path]:
+    """Yields a folder with a copy of the project, whose files are links."""
+    with tempfile.TemporaryDirectory(prefix="kit-control-", ignore_cleanup_errors=True) as name:
+        _copy_project(Path(name))
+        yield Path(name)
+
+
+def _copy_project(folder: Path) -> None:
     for name in COPIED:
         source = ROOT / name
         if source.is_dir():
             shutil.copytree(source, folder / name, copy_function=_link)  # with what has been compiled
         elif source.exists():
             _link(source, folder / name)
+
+
+def see(control: Control, folder: Path) -> Seen:
+    """Runs the control's test in a copy of the project, with its defence and without; what was taken away is there again then."""
     changed = folder / control.file
     text = changed.read_text("utf-8")
     if text.count(control.defence) != 1:
@@ -1157,8 +1169,12 @@ def see(control: Control, folder: Path) -> Seen:
     if "passed" not in output:
         return Seen.SKIPPED
     changed.unlink()
-    changed.write_text(text.replace(control.defence, control.without), "utf-8")
-    code, output = _run(control, folder, max(HANG_S, 5 * taken_s) if control.hangs else LIMIT_S)
+    try:
+        changed.write_text(text.replace(control.defence, control.without), "utf-8")
+        code, output = _run(control, folder, max(HANG_S, 5 * taken_s) if control.hangs else LIMIT_S)
+    finally:
+        changed.unlink()
+        _link(ROOT / control.file, changed)
     if code is None:
         return Seen.FAILS if control.hangs else Seen.TOO_LONG
     if BROKEN.search(output):
@@ -1190,10 +1206,10 @@ def _run(control: Control, folder: Path, limit_s: float) -> tuple[int | None, st
 
 def tried(words: Sequence[str] = ()) -> Iterator[tuple[Control, Seen]]:
     """Yields each control whose name holds one of the words, with what was seen of it."""
-    for control in CONTROLS:
-        if not words or any(word in control.name for word in words):
-            with tempfile.TemporaryDirectory(prefix="kit-control-") as folder:
-                yield control, see(control, Path(folder))
+    with project_copy() as folder:
+        for control in CONTROLS:
+            if not words or any(word in control.name for word in words):
+                yield control, see(control, folder)
 
 
 def main() -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from tests.cases import every_case
 from tests.grader.attacks import FOURTH_ROUND, THIRD_ROUND, WORKED_ONCE
 from tests.grader.conftest import LOCKS
-from tests.grader.controls import CONTROLS, ROOT, Control, Seen, see
+from tests.grader.controls import CONTROLS, ROOT, Control, Seen, project_copy, see
 
 
 def function_of(control: Control) -> str:
@@ -42,9 +43,15 @@ def test_what_worked_once_has_a_test_that_fails_without_its_defence(name: str) -
     assert {function_of(control) for control in CONTROLS}.intersection(HOLDING[name])
 
 
+@pytest.fixture(scope="module")
+def folder() -> Iterator[Path]:
+    with project_copy() as copied:
+        yield copied
+
+
 @LOCKS
 @pytest.mark.nightly
 @pytest.mark.long
 @pytest.mark.parametrize("control", CONTROLS, ids=lambda control: control.name)
-def test_its_test_fails_without_it(control: Control, tmp_path: Path) -> None:
-    assert see(control, tmp_path) in (Seen.FAILS, Seen.SKIPPED)
+def test_its_test_fails_without_it(control: Control, folder: Path) -> None:
+    assert see(control, folder) in (Seen.FAILS, Seen.SKIPPED)

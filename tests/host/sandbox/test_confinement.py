@@ -344,7 +344,8 @@ def test_a_separate_program_is_alone_and_its_disk_is_small(student: Student, lev
         import errno, os
         def alone():
             assert os.getpid() == 2 and os.getppid() == 1
-            return sum(map(os.path.exists, ("/etc/passwd", "/home", "/proc/1", "/bin/sh", "/dev/shm")))
+            places = ("/etc/passwd", "/home", "/proc/1", "/bin/sh", "/dev/shm")
+            return sum(os.path.exists(each) for each in places if not __file__.startswith(each))
         def fill():
             try:
                 for i in range(100):
