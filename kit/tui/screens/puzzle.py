@@ -31,7 +31,7 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
     screen_actions = ScreenActions(
         "puzzle",
         ("move_cursor", "mark_cell", "undo", "check", "next", "help", "back"),
-        ("switch_robot", "edit_file"),
+        ("restart", "switch_robot", "edit_file"),
         own=(
             letter("mark_cell", "Space", "mark", "mark the place of the cursor, or wait", name="space"),
             letter("switch_robot", "Tab", "other robot", "plan the other robot's way", name="tab", has_priority=True),
@@ -51,6 +51,8 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         super().__init__(theme, challenge, journal, workspace, following)
         self._board = self._read_board()
         self._written = self._board.answer
+        self._before_restart: Board | None = None
+        """What was given up by the last key; None where that was another one."""
 
     def _read_board(self) -> Board:
         """The board with the answer that its file holds."""
@@ -59,6 +61,9 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             answer = self._challenge.task.read_answer(self._file)
         except AnswerError:
             answer = ""
+        return self._board_of(answer)
+
+    def _board_of(self, answer: str) -> Board:
         board = self._challenge.task.board(answer)
         assert board is not None  # only challenges that have one come here
         return board
@@ -95,7 +100,8 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             self.screen_actions, self.size.width, labels=labels, without=self._unavailable_actions()
         )
 
-    def _changed(self) -> None:
+    def _changed(self, before_restart: Board | None = None) -> None:
+        self._before_restart = before_restart
         self._result, self._won = [], Medal.NONE
         self._renew()
 
@@ -134,8 +140,16 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         self._changed()
 
     def action_undo(self) -> None:
-        self._board.undo()
+        if self._before_restart is None:
+            self._board.undo()
+        else:
+            self._board = self._before_restart
         self._changed()
+
+    def action_restart(self) -> None:
+        """The board as it was before anybody played; undo brings the present one back."""
+        before, self._board = self._board, self._board_of("")
+        self._changed(before)
 
     def action_switch_robot(self) -> None:
         self._board.switch()

@@ -294,3 +294,25 @@ def test_what_the_answer_is_about_stands_beside_the_page(
         await seen(pilot, "# mended")
 
     visit(scene, journal, tmp_path, size)
+
+
+def test_a_puzzle_is_begun_anew_by_a_key_and_undo_brings_the_answer_back(
+    journal: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, PuzzleScreen), "the puzzle")
+        await pilot.press("right", "right", "down")
+        await seen(pilot, "3 of 40 moves")
+        await pilot.press("r")
+        await seen(pilot, "0 of 40 moves")
+        await pilot.press("u")
+        await seen(pilot, "3 of 40 moves")
+        await pilot.press("u")
+        await seen(pilot, "2 of 40 moves")
+        await pilot.press("r", "left")
+        await seen(pilot, "1 of 40 moves")
+        await pilot.press("u", "u")
+        await seen(pilot, "0 of 40 moves")
+
+    visit(scene, journal, tmp_path)

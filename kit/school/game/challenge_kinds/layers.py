@@ -180,7 +180,7 @@ class LayersBoard(Board):
                 sign = ("o" if is_laser else "x") if name in members else "."
                 cells += [("  ", ""), (sign, "chosen" if is_here else "" if name in members else "dim")]
             rows.append(tuple(cells))
-        count = "all is as asked" if not wrong else f"{len(wrong)} still wrong, first: {wrong[0]}"
+        count = "all is as asked" if not wrong else f"{len(wrong)} still wrong"
         return [*rows, row(), row((f"  {counted(len(self._layers), 'layer')}", "bold"), f"; {count}")]
 
 
