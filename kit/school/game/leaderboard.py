@@ -203,7 +203,7 @@ def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> lis
         for user, name in names.items()
         for level in read
         for driver in DriverKind
-        if (judged := judges[user].judge(_drive_file(folder, user, level.id, driver), level, driver))
+        if (judged := judges[user].judge(_standing_file(folder, user, level.id, driver), level, driver))
         is not None
     ]
     lengths: dict[tuple[str, DriverKind], set[int]] = {}
@@ -318,6 +318,16 @@ class _Judge:
         except (OSError, DriveRefused):
             return None
         return None if judged is None else (judged, since_ns)
+
+
+def _standing_file(folder: Path, user: int, level: str, driver: DriverKind) -> Path:
+    """The file of the drive that stands for a user: the last one, but of a day's level the first that was put there, also where
+    it was driven once more in another workspace."""
+    file = _drive_file(folder, user, level, driver)
+    if level.startswith(DAILY_PREFIX) and file.is_file():
+        with suppress(OSError):
+            return next((each for each in _former_files(file) if each.lstat().st_uid == user), file)
+    return file
 
 
 def _is_as_long(ticks: Iterable[int], lengths: Collection[int]) -> bool:

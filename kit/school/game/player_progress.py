@@ -77,22 +77,31 @@ def kept_rules(level: GameLevel, finish: RaceFinish, facts: DriverFacts) -> tupl
 def facts_of_program(file: Path) -> DriverFacts:
     """The facts that a program's file shows."""
     try:
-        tree = _without_docstrings(file.read_bytes())
-    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+        text = bare_code(file.read_bytes())
+    except (OSError, *CODE_ERRORS):
         return DriverFacts()  # it cannot drive either, and says so itself
-    text = ast.unparse(tree)
-    shipped = {ast.unparse(_without_docstrings(each.file.read_bytes())) for each in kit_controllers()}
+    shipped = {bare_code(each.file.read_bytes()) for each in kit_controllers()}
     return DriverFacts(is_shipped=text in shipped, code_lines=len(text.splitlines()) - text.count("\n\n"))
 
 
-def _without_docstrings(source: bytes) -> ast.Module:
+CODE_ERRORS: Final = (SyntaxError, ValueError, RecursionError, MemoryError)
+"""What reading a text as a program raises that is none."""
+
+
+def bare_code(source: bytes) -> str:
+    """A program without comments, docstrings and other constants that stand alone, in Python's own layout. Raises ``CODE_ERRORS``."""
     tree = ast.parse(source)
     for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and (
-            ast.get_docstring(node, clean=False) is not None
-        ):
-            node.body = node.body[1:] or [ast.Pass()]
-    return tree
+        for field, value in ast.iter_fields(node):
+            if isinstance(value, list) and value and isinstance(value[0], ast.stmt):
+                does = [each for each in value if not _is_constant(each)]
+                setattr(node, field, does or ([ast.Pass()] if field == "body" else []))
+    return ast.unparse(tree)
+
+
+def _is_constant(statement: ast.stmt) -> bool:
+    """Whether it does nothing, as a docstring."""
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
 
 
 BELTS: Final = ("no", "white", "yellow", "green", "blue", "brown", "black")

@@ -20,14 +20,17 @@ from kit.school.game.daily import (
     wall_segments,
 )
 from kit.school.game.drive_records import begin_run, join_leaderboard, record_drive
-from kit.school.game.leaderboard import FOLDER_VARIABLE, leaderboard_folder, read_entries
+from kit.school.game.leaderboard import FOLDER_VARIABLE, leaderboard_folder, publish_drives, read_entries
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.race import DriverKind, judge_recording
 from kit.school.game.references import drive_reference, reference_seconds
+from kit.school.game.starts import OWN_SEED
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
-from tests.school.game.measured_drivers import judged, keys_drive, tape_drives
+from tests.school.game.measured_drivers import drive, judged, keys_drive, tape_drives
+from tests.school.game.ordinary import targets_of
+from tests.school.game.tidy import TidyDriver
 
 DAY = datetime.date(2026, 9, 1)
 DAYS = [DAY + datetime.timedelta(days=number) for number in range(60)]
@@ -122,6 +125,22 @@ def test_the_first_run_of_a_day_counts_and_others_are_practice(
     assert (again.medal, again.is_best, again.rules) == (Medal.NONE, False, ())
     assert len(events) == 1
     (entry,) = read_entries(leaderboard_folder(), [level])
+    assert entry.seconds == first[0].seconds
+
+
+def test_a_run_in_another_workspace_does_not_take_the_place_of_the_first_one(tmp_path: Path) -> None:
+    level = daily_level(DAY)
+    targets = targets_of(level)
+    first, better = (
+        keys_drive(level),
+        drive(
+            level, OWN_SEED, lambda session: session.runner.participants.append(TidyDriver(session, targets))
+        ),
+    )
+    assert better[0].seconds < first[0].seconds
+    for _, recording in (first, better):
+        publish_drives(tmp_path, "Ada", {(level.id, DriverKind.KEYS): [recording]})
+    (entry,) = read_entries(tmp_path, [level])
     assert entry.seconds == first[0].seconds
 
 

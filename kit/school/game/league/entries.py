@@ -13,19 +13,21 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Final
 
 from kit.controllers import ControllerFile, controller_title, kit_controllers
 from kit.plain_files import open_plain_file
 from kit.plain_text import quoted, suggestion
+from kit.school.game.player_progress import CODE_ERRORS, bare_code
 from kit.school.game.race import DriverKind
 from kit.workspace import open_common_folder, write_atomically
 
 FOLDER: Final = "entries"
 DRIVERS: Final = (DriverKind.CONTROLLER, DriverKind.AGENT)
-MAX_BYTES: Final = 4 << 20
-"""Of an entry's file; an agent's network lies in it."""
+MAX_BYTES: Final = {DriverKind.CONTROLLER: 256 << 10, DriverKind.AGENT: 4 << 20}
+"""Of an entry's file; an agent's network lies in it, and a program is read as code."""
 MAX_ENTRIES: Final = 500
 MAX_OF_ONE_USER: Final = 3
 """Entries of one user in another's league: more could drive against each other for one of them, and take the owner's time."""
@@ -51,6 +53,8 @@ class Entry:
     file: Path
     digest: str
     """Of the program; a match counts for exactly these programs."""
+    code: str
+    """Of its code alone: equal for programs that differ in comments and layout."""
     is_mine: bool
     user: int = -1
     """The number of the user whose file it is; -1 for one that cannot be read."""
@@ -73,7 +77,7 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
         files = sorted((folder / FOLDER).iterdir(), key=lambda file: _rank(file, holders))
     except OSError:
         raise LeagueError(f"{folder}: there is no league; `kit league new {folder}` makes one.") from None
-    shipped = {_digest(each.file.read_bytes()) for each in kit_controllers()}
+    shipped = _shipped_code()
     found: list[Entry] = []
     for file in files:
         name, _, kind = file.name.removesuffix(".py").partition(".")
@@ -91,16 +95,18 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
                 user = os.fstat(opened.fileno()).st_uid
                 if user != owner and sum(each.user == user for each in found) >= MAX_LISTED_OF_ONE_USER:
                     continue
-                content = opened.read(MAX_BYTES + 1)
+                content = opened.read(MAX_BYTES[drivers[0]] + 1)
         except OSError as error:
             problem = f"its file cannot be read ({error.strerror})"
+        is_too_large = len(content) > MAX_BYTES[drivers[0]]
         digest = _digest(content)
-        same = [each.name for each in found if each.digest == digest]
+        code = digest if is_too_large else _code_digest(content, drivers[0])
+        same = [each.name for each in found if each.code == code]
         others = sum(each.user == user and not each.problem for each in found)
         if not problem:
-            if len(content) > MAX_BYTES:
-                problem = f"its file is larger than {MAX_BYTES >> 20} MiB"
-            elif digest in shipped:
+            if is_too_large:
+                problem = f"its file is larger than {MAX_BYTES[drivers[0]] >> 10} KiB"
+            elif code in shipped:
                 problem = "this program comes with the kit"
             elif name.casefold() in [each.name.casefold() for each in found]:
                 problem = "its name is taken"
@@ -108,7 +114,7 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
                 problem = f"it is the same program as {same[0]}"
             elif user != owner and others >= MAX_OF_ONE_USER:
                 problem = f"its user has {MAX_OF_ONE_USER} other entries"
-        found.append(Entry(name, drivers[0], file, digest, user == os.getuid(), user, problem))
+        found.append(Entry(name, drivers[0], file, digest, code, user == os.getuid(), user, problem))
     return tuple(sorted(found, key=lambda each: (each.name, each.driver.value)))
 
 
@@ -153,16 +159,17 @@ def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
     """Adds an entry, or renews one's own of that name. Returns its file. Raises LeagueError."""
     if not NAME.fullmatch(name):
         raise LeagueError(f"{quoted(name)} cannot be an entry's name: 1 to 32 letters, digits, - and _.")
-    if len(program) > MAX_BYTES:
-        raise LeagueError(f"The program is larger than {MAX_BYTES >> 20} MiB.")
+    if len(program) > MAX_BYTES[driver]:
+        raise LeagueError(f"The program is larger than {MAX_BYTES[driver] >> 10} KiB.")
+    code = _code_digest(program, driver)
     for each in read_entries(folder):
         is_taken = not each.problem and each.name.casefold() == name.casefold()
         if is_taken and (each.name != name or not each.is_mine):
             whose = "You have" if each.is_mine else "Another user has"
             raise LeagueError(f"{whose} entered {each.name}: choose another name with --name.")
-        if each.digest == _digest(program) and each.name != name:
+        if each.code == code and each.name != name:
             raise LeagueError(f"{each.name} is the same program.")
-    if _digest(program) in {_digest(each.file.read_bytes()) for each in kit_controllers()}:
+    if code in _shipped_code():
         raise LeagueError(
             "This program comes with the kit, and takes part in no league: copy it and make it yours."
         )
@@ -211,6 +218,25 @@ def program_of_agent(name: str, runs: Path) -> bytes:
         return format_policy_node(policy).encode()
     except (PolicyError, RunError, LookupError) as error:
         raise LeagueError(str(error)) from None
+
+
+@lru_cache(MAX_ENTRIES)
+def _code_digest(content: bytes, driver: DriverKind) -> str:
+    """The digest of a program's code; of an agent's file, whose code is the kit's, that of its bytes."""
+    if driver is DriverKind.AGENT:
+        return _digest(content)
+    try:
+        return _digest(bare_code(content).encode())
+    except CODE_ERRORS:
+        return _digest(content)
+
+
+@cache
+def _shipped_code() -> frozenset[str]:
+    """Of the controllers that come with the kit."""
+    return frozenset(
+        _code_digest(each.file.read_bytes(), DriverKind.CONTROLLER) for each in kit_controllers()
+    )
 
 
 def _digest(content: bytes) -> str:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import stat
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
@@ -138,14 +139,22 @@ class League(JobFolder):
 
     @property
     def owner(self) -> int:
-        """The number of the user whose results count. Raises LeagueError."""
+        """The number of the user whose results count. Raises LeagueError, also where another user than the folder's own could have
+        put that file there in place of it."""
         try:
-            return (self.folder / MANIFEST).lstat().st_uid
+            folder, owner = self.folder.stat(), (self.folder / MANIFEST).lstat().st_uid
         except OSError:
             raise LeagueError(f"{self.folder}: there is no league; `kit league new` makes one.") from None
+        is_replaceable = folder.st_mode & 0o022 and not folder.st_mode & stat.S_ISVTX
+        if is_replaceable and owner != folder.st_uid:
+            raise LeagueError(
+                f"{self.folder}: its files can be replaced by others than their owners; chmod go-w it, or make the league in another folder."
+            )
+        return owner
 
     def programme(self) -> Programme:
-        """Raises LeagueError."""
+        """Raises LeagueError, as ``owner`` does: whose list it is counts as much as what stands in it."""
+        _ = self.owner
         try:
             content = read_plain_file(self.folder / MANIFEST, MAX_MANIFEST_BYTES)
         except OSError:

@@ -228,7 +228,7 @@ def test_who_withdraws_takes_the_matches_along_and_a_new_program_drives_anew(dri
     assert (names(standings), len(standings.matches), standings.waiting) == (["laser", "stands"], 1, 0)
     league.remove_stale_results()
     assert len(list((league.folder / "results").iterdir())) == 2
-    submit(league.folder, "stands", CONTROLLER, GIVES_UP + b"# again\n")
+    submit(league.folder, "stands", CONTROLLER, GIVES_UP + b"again = True\n")
     assert len(league.waiting()) == 1
     assert read_standings(league).matches == ()
     with pytest.raises(LeagueError):
@@ -260,7 +260,7 @@ def test_what_was_judged_is_kept_for_the_next_look_and_damage_of_it_is_passed_ov
 
 
 def test_divisions_hold_six_each(tmp_path: Path) -> None:
-    programs = {f"stands{number}": STANDS + b"#" * number for number in range(1, 9)}
+    programs = {f"stands{number}": STANDS + b"number = %d\n" % number for number in range(1, 9)}
     standings = read_standings(make_league(tmp_path, **programs))
     assert [each.division for each in standings.places] == [1] * 6 + [2] * 2
     assert standings_table(standings).grouped
@@ -308,6 +308,16 @@ def copy_of_the_kits_own(league: League) -> None:
     shutil.copy(shipped, league.folder / "entries" / "mine.controller.py")
 
 
+def copy_of_the_kits_own_with_a_comment(league: League) -> None:
+    shipped = kit_controllers()[0].file.read_bytes()
+    (league.folder / "entries" / "mine.controller.py").write_bytes(shipped + b"\n# all mine\n")
+
+
+def anothers_program_in_another_layout(league: League) -> None:
+    program = b'"""All mine."""\n' + LASER.replace(b"\n\n", b"\n\n\n# mine\n")
+    (league.folder / "entries" / "mine.controller.py").write_bytes(program)
+
+
 def anothers_program_again(league: League) -> None:
     (league.folder / "entries" / "mine.controller.py").write_bytes(LASER)
 
@@ -321,21 +331,23 @@ def link_to_anothers_program(league: League) -> None:
 
 
 def one_name_twice(league: League) -> None:
-    (league.folder / "entries" / "laser.agent.py").write_bytes(LASER + b"#\n")
+    (league.folder / "entries" / "laser.agent.py").write_bytes(LASER + b"number = 1\n")
 
 
 def name_in_capitals(league: League) -> None:
-    (league.folder / "entries" / "LASER.controller.py").write_bytes(LASER + b"#\n")
+    (league.folder / "entries" / "LASER.controller.py").write_bytes(LASER + b"number = 1\n")
 
 
 def program_that_fills_the_disk(league: League) -> None:
-    (league.folder / "entries" / "mine.controller.py").write_bytes(b"#" * (MAX_BYTES + 1))
+    (league.folder / "entries" / "mine.controller.py").write_bytes(b"#" * (MAX_BYTES[CONTROLLER] + 1))
 
 
 @pytest.mark.parametrize(
     "cheat",
     [
         copy_of_the_kits_own,
+        copy_of_the_kits_own_with_a_comment,
+        anothers_program_in_another_layout,
         anothers_program_again,
         anothers_program_under_an_earlier_name,
         link_to_anothers_program,
@@ -363,7 +375,7 @@ def test_many_files_push_nobody_out(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     time.sleep(CLOCK_STEP_S)
     for number in range(10):
         file = league.folder / "entries" / f"a{number}.controller.py"
-        file.write_bytes(LASER + b"# %d" % number)
+        file.write_bytes(LASER + b"number = %d\n" % number)
         os.utime(file, (0, 0))
     entries = read_entries(league.folder)
     assert len(entries) == 4
@@ -395,9 +407,9 @@ def enter_as(user: int, league: League, name: str, program: bytes) -> Path:
 def test_who_renews_an_entry_keeps_its_name(tmp_path: Path, name: str) -> None:
     league = make_league(tmp_path, ada=LASER, bob=GIVES_UP)
     record_holders(league.folder)
-    enter_as(ANOTHER, league, name, LASER + b"#")
+    enter_as(ANOTHER, league, name, LASER + b"number = 1\n")
     time.sleep(CLOCK_STEP_S)
-    submit(league.folder, "ada", CONTROLLER, LASER + b"# better")
+    submit(league.folder, "ada", CONTROLLER, LASER + b"better = True\n")
     (ada,) = (each for each in league.entrants() if each.name.casefold() == "ada")
     assert (ada.user, ada.file.name) == (os.getuid(), "ada.controller.py")
     for forged in (b"[" * 9000, b'{"ada": "x"}', b'{"ada": %d}' % ANOTHER):
@@ -418,7 +430,7 @@ def test_who_came_first_with_many_files_keeps_nobody_out(
     monkeypatch.setattr(entries_module, "MAX_ENTRIES", 12)
     league = make_league(tmp_path)
     for number in range(30):
-        enter_as(ANOTHER, league, f"a{number}.controller.py", STANDS + b"#%d" % number)
+        enter_as(ANOTHER, league, f"a{number}.controller.py", STANDS + b"number = %d\n" % number)
     time.sleep(CLOCK_STEP_S)
     enter_as(THIRD, league, "third.controller.py", LASER)
     assert Counter(each.user for each in league.entrants()) == {ANOTHER: MAX_OF_ONE_USER, THIRD: 1}
@@ -426,9 +438,11 @@ def test_who_came_first_with_many_files_keeps_nobody_out(
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
 def test_one_user_has_few_entries_in_anothers_league(tmp_path: Path) -> None:
-    league = make_league(tmp_path, **{f"mine{number}": LASER + b"#%d" % number for number in range(6)})
+    league = make_league(
+        tmp_path, **{f"mine{number}": LASER + b"number = %d\n" % number for number in range(6)}
+    )
     for number in range(9):
-        enter_as(ANOTHER, league, f"a{number}.controller.py", STANDS + b"#%d" % number)
+        enter_as(ANOTHER, league, f"a{number}.controller.py", STANDS + b"number = %d\n" % number)
     enter_as(THIRD, league, "third.controller.py", STANDS)
     counts = Counter(each.user for each in league.entrants())
     assert counts == {os.getuid(): 6, ANOTHER: MAX_OF_ONE_USER, THIRD: 1}
@@ -519,6 +533,27 @@ def test_a_result_that_was_not_driven_counts_for_nothing_and_is_driven_anew(
     assert read_standings(league).matches == ()
 
 
+@pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
+@pytest.mark.parametrize(
+    ("mode", "is_refused"), [(0o777, True), (0o775, True), (0o1777, False), (0o755, False)]
+)
+def test_who_puts_his_own_list_in_place_of_the_owners_does_not_become_the_owner(
+    tmp_path: Path, mode: int, is_refused: bool
+) -> None:
+    league = make_league(tmp_path, laser=LASER)
+    owner, manifest = league.owner, league.folder / "league.json"
+    league.folder.chmod(mode)
+    assert league.owner == owner
+    os.chown(
+        manifest, ANOTHER, ANOTHER
+    )  # in a folder in which others can rename files it may be one of theirs
+    if is_refused:
+        with pytest.raises(LeagueError, match="can be replaced"):
+            read_standings(league)
+    else:
+        assert league.owner == ANOTHER
+
+
 def test_only_results_of_the_owner_count(driven: League, monkeypatch: pytest.MonkeyPatch) -> None:
     league = driven
     assert len(read_standings(league).matches) == 1
@@ -603,7 +638,9 @@ def test_of_two_that_do_not_arrive_none_has_won_unless_a_program_has_failed() ->
 
     def points(first: JudgedJob, second: JudgedJob) -> float:
         jobs = [
-            LeagueJob(name, level, (Entry(name, DriverKind.CONTROLLER, Path(name), name, is_mine=True),))
+            LeagueJob(
+                name, level, (Entry(name, DriverKind.CONTROLLER, Path(name), name, name, is_mine=True),)
+            )
             for name in ("first", "second")
         ]
         return race_match((jobs[0], jobs[1]), (first, second)).points
