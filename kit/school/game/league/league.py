@@ -30,7 +30,7 @@ from kit.host.sandbox.limits import GRADER_LIMITS
 from kit.host.sandbox.probe import is_level_available
 from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.plain_files import open_plain_file, read_plain_file
-from kit.run.recording import Recording, RecordingError
+from kit.run.recording import Recorder, Recording, RecordingError
 from kit.school.game.league.entries import FOLDER as ENTRIES
 from kit.school.game.league.entries import MANIFEST, Entry, LeagueError, read_entries, record_holders
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
@@ -45,8 +45,9 @@ from kit.school.game.shared_drives import (
     read_shared_drives,
     share_drives,
 )
-from kit.school.game.starts import seeds_of
+from kit.school.game.starts import scenario_from, seeds_of
 from kit.school.game.two_players import TAG_SECONDS, CannotShare, SharedPhase
+from kit.sim.simulation import Simulation
 from kit.workspace import Workspace, make_private_folder, open_common_folder, write_atomically
 
 FOLDER_VARIABLE: Final = "KIT_LEAGUE"
@@ -320,19 +321,32 @@ def run_league_job(job: LeagueJob, confinement: Confinement) -> tuple[list[Recor
         if len(programs) > 1:
             game = play_tag(job.level, programs, confinement, GRADER_LIMITS)
             return [game.recording], list(game.failures)
-        drives = [
-            race_controller(
-                job.level,
-                programs[0],
-                wall_limit_s=WALL_LIMIT_S,
-                seed=seed,
-                confinement=confinement,
-                limits=GRADER_LIMITS,
+        drives: list[tuple[RaceFinish, Recording]] = []
+        for seed in seeds_of(job.level):
+            if drives and drives[0][0].failure is not None and not drives[0][1].ticks:
+                drives.append(
+                    (drives[0][0], _undriven(job.level, seed))
+                )  # it would not start from here either
+                continue
+            drives.append(
+                race_controller(
+                    job.level,
+                    programs[0],
+                    wall_limit_s=WALL_LIMIT_S,
+                    seed=seed,
+                    confinement=confinement,
+                    limits=GRADER_LIMITS,
+                )
             )
-            for seed in seeds_of(job.level)
-        ]
     remarks = ["" if finish.failure is None else str(finish.failure) for finish, _ in drives]
     return [recording for _, recording in drives], remarks
+
+
+def _undriven(level: GameLevel, seed: int) -> Recording:
+    """The recording of a program that has not started: without a tick."""
+    scenario = scenario_from(level, seed)
+    simulation = Simulation(scenario.world, seed=seed, has_subscribers=lambda topic: False)
+    return Recorder.for_scenario(scenario, simulation).recording()
 
 
 def _copy_program(entry: Entry, folder: Path, number: int) -> ControllerFile:

@@ -18,6 +18,7 @@ import pytest
 from kit.controllers import kit_controllers
 from kit.document.layout import lines_of
 from kit.host.sandbox.sandbox_config import Level
+from kit.run.recording import Recording
 from kit.school.game.league import entries as entries_module
 from kit.school.game.league import league as league_module
 from kit.school.game.league.entries import (
@@ -52,8 +53,9 @@ from kit.school.game.league.standings import (
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
 from kit.school.game.league.verification import differing_jobs
 from kit.school.game.levels import find_level
-from kit.school.game.race import DriverKind, RaceFinish
+from kit.school.game.race import DriverKind, RaceFinish, race_controller
 from kit.school.game.shared_drives import digest_of, share_drives
+from kit.school.game.starts import OWN_SEED, seeds_of
 from kit.school.game.two_players import TAG_SECONDS
 from kit.workspace import open_workspace
 
@@ -170,6 +172,28 @@ def test_all_meet_all_and_the_best_is_champion(tmp_path: Path) -> None:
     assert "RuntimeError" in " ".join(by_pair["crashes", "laser"].details)
     assert len(standings_table(standings).rows) == 3
     assert sum(each.rating.points for each in standings.places) == pytest.approx(3 * 1500.0)
+
+
+@pytest.mark.long
+def test_a_program_that_does_not_start_is_started_once_for_each_level(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that waits for ever would take two minutes of the owner's time from each of five starts."""
+    started: list[int] = []
+
+    def race(*args: Any, seed: int, **options: Any) -> tuple[RaceFinish, Recording]:
+        started.append(seed)
+        return race_controller(*args, seed=seed, **options)
+
+    monkeypatch.setattr(league_module, "race_controller", race)
+    league = make_league(tmp_path, laser=LASER, crashes=CRASHES)
+    job = next(each for each in league.jobs() if each.entrants[0].name == "crashes")
+    league.run_job(job.key)
+    assert started == [OWN_SEED]
+    judged = league.judge(job)
+    assert judged is not None
+    assert len(judged.finishes) == len(seeds_of(LEVEL))
+    assert all("RuntimeError" in each for each in judged.remarks)
 
 
 @pytest.mark.long
