@@ -231,7 +231,8 @@ class Queue(JobFolder):
                 break
             result, findings = grade_and_keep(assignment, submission, options)
         if findings is not None:
-            _write(self.findings_file(findings_key(submission, assignment, options)), findings.as_dict())
+            of = findings_key(submission, assignment, options)
+            _write(self.findings_file(of), {"of": of, **findings.as_dict()})
         self.save_result(key, result)
         return result
 
@@ -322,8 +323,11 @@ def judge_anew(queue: Queue) -> int:
     assignment, options, judged = queue.assignment(), queue.grading_options(), 0
     for key in queue.waiting():
         submission = queue.submission(key)
+        of = findings_key(submission, assignment, options)
         try:
-            content = read_result(queue.findings_file(findings_key(submission, assignment, options)))
+            content = read_result(queue.findings_file(of))
+            if content["of"] != of:
+                raise ValueError("findings about another submission")
             findings = Findings.from_dict(content)
         except (OSError, KeyError, TypeError, ValueError):
             continue

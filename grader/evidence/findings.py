@@ -78,6 +78,9 @@ class Findings:
     def from_dict(cls, content: Mapping[str, Any]) -> Findings:
         """The findings that ``as_dict`` wrote. Raises KeyError, TypeError or ValueError for other data."""
         given = {each.name: content[each.name] for each in fields(cls) if each.name != "pieces"}
+        check_field_types(cls, {name: value for name, value in given.items() if name != "outcomes"})
+        if not isinstance(given["outcomes"], Mapping):
+            raise TypeError("outcomes that are of no test")
         pieces = []
         for each in content["pieces"]:
             check_field_types(KeptFinding, each)

@@ -18,6 +18,7 @@ from typing import Any, Final
 from xml.etree import ElementTree
 
 from kit.plain_files import read_plain_file
+from kit.plain_text import quoted
 
 MAX_NESTING: Final = 8
 """How many folders above a program's file its package's may be."""
@@ -30,6 +31,10 @@ MAX_VALUE_SIZE: Final = 100_000
 
 MAX_MANIFEST_BYTES: Final = 1 << 20
 """Size of each of the files that describe a package."""
+
+MAX_NAME_LENGTH: Final = 100
+_NAME: Final = re.compile(rf"[A-Za-z0-9][\w.-]{{0,{MAX_NAME_LENGTH - 1}}}", re.ASCII)
+"""Of a package: it is that of a folder too."""
 
 SOURCE_FOLDERS: Final = ("src", "packages")
 """The folders of a workspace in which its packages lie: of colcon's, and of the kit's own."""
@@ -230,13 +235,21 @@ def broken_packages(folders: Iterable[Path]) -> Iterator[str]:
 
 
 def _parse(file: Path) -> ElementTree.Element:
-    """Reads a ``package.xml``. Raises PackageError for what is no XML, with its place, and OSError."""
+    """Reads a ``package.xml``. Raises PackageError for what is no XML, with its place, and for a name that cannot be a folder's;
+    and OSError."""
     try:
-        return ElementTree.fromstring(read_plain_file(file, MAX_MANIFEST_BYTES))
+        root = ElementTree.fromstring(read_plain_file(file, MAX_MANIFEST_BYTES))
     except ElementTree.ParseError as problem:
         raise _broken_xml(file, problem) from None
     except (LookupError, ValueError) as problem:  # the encoding that its first line names
         raise PackageError(f"{file}:1: broken XML: {problem}; write it in UTF-8") from None
+    name = (root.findtext("name") or "").strip()
+    if name and not _NAME.fullmatch(name):
+        raise PackageError(
+            f"{file}: {quoted(name[:MAX_NAME_LENGTH])} is no name of a package: it may have letters, digits, '_', '-' and '.', at "
+            f"most {MAX_NAME_LENGTH}"
+        )
+    return root
 
 
 def read_manifest_texts(folder: Path, tag: str) -> tuple[str, ...]:

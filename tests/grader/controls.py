@@ -278,6 +278,20 @@ CONTROLS: Final = (
         "grader/cohort/test_class_list.py::test_what_a_student_typed_into_the_worksheet_costs_nobody_a_grade",
     ),
     Control(
+        "findings about another submission",
+        "grader/cohort/queue.py",
+        '            if content["of"] != of:\n',
+        "            if not of:\n",
+        "grader/evidence/test_findings.py::test_a_changed_word_regrades_a_class_without_a_program",
+    ),
+    Control(
+        "a package whose name leads to another folder",
+        "kit/ros/packages.py",
+        "    if name and not _NAME.fullmatch(name):\n",
+        "    if name is None:\n",
+        "ros/test_packages.py::test_a_name_that_cannot_be_a_folders_is_none",
+    ),
+    Control(
         "a package that installs files of others",
         "kit/ros/packages.py",
         "if not source.resolve().is_relative_to(folder.resolve()):",

@@ -206,6 +206,15 @@ def test_a_hostile_manifest_is_refused_by_name(name: str, text: str, tmp_path: P
         read_package(tmp_path)
 
 
+@pytest.mark.parametrize("name", ["../../etc", "/etc", "..", "a/b", "p" * 300, "p\u202eg", "p g"])
+def test_a_name_that_cannot_be_a_folders_is_none(name: str, tmp_path: Path) -> None:
+    folder = package(tmp_path / "pkg")
+    (folder / "package.xml").write_text(XML.replace("pkg", name))
+    with pytest.raises(PackageError, match="no name of a package"):
+        read_package(folder)
+    assert find_packages([tmp_path]) == {}
+
+
 def test_a_list_doubled_line_by_line_stays_small(tmp_path: Path) -> None:
     (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
     (tmp_path / "setup.py").write_text("a = ['x = y:z']\n" + "a = a + a\n" * 60 + DOUBLED)

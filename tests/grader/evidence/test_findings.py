@@ -188,6 +188,24 @@ def test_a_changed_word_regrades_a_class_without_a_program(
     assert queue.waiting() == ()
     results = [queue.result(entry.key or "") for entry in queue.entries()]
     assert {result.max_points for result in results if result is not None} == {9}
+    files = sorted((queue.folder / "findings").iterdir())
+    whole = json.loads(files[0].read_bytes())
+    files[0].write_bytes(files[1].read_bytes())  # a worker has put another's there
+    shutil.rmtree(queue.folder / "results")
+    prepare_queue(queue, tmp_path / "in", after, options)
+    assert judge_anew(queue) == 2
+    odd = [
+        {name: value} for name in ("evidence", "outcomes", "collected", "pieces") for value in ([1], "a", 1)
+    ]
+    odd += [
+        {"pieces": [{**whole["pieces"][0], "measures": dict.fromkeys(whole["pieces"][0]["measures"], "a")}]}
+    ]
+    damages = [json.dumps(whole | each).encode() for each in odd]
+    for damage in (b"", b"{}", b'{"level": 1e999}', b"[" * 100_000, *damages):
+        files[0].write_bytes(damage)
+        shutil.rmtree(queue.folder / "results")
+        prepare_queue(queue, tmp_path / "in", after, options)
+        assert judge_anew(queue) == 2, damage[:300]
     for damage in (b"", b"{}", b'{"level": 1e999}', b"[" * 100_000):
         for file in (queue.folder / "findings").iterdir():
             file.write_bytes(damage)
