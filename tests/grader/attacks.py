@@ -129,6 +129,30 @@ NO_ATTACK = ("host/sandbox/test_confinement.py::test_no_attack_gets_anywhere",)
 
 WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
+        "a reward, and a program to imitate, that a resumed run of somebody else's brings along": (
+            "learning/training/test_hostile_runs.py::test_a_reward_in_somebody_elses_run_does_not_run_with_ones_rights",
+            "learning/training/test_hostile_runs.py::test_a_controller_that_somebody_elses_run_imitates_does_not_run_with_ones_rights",
+        ),
+        "checkpoints with counts below nothing, beyond a float, in words; actions that there are not; an optimiser without its state": (
+            "learning/training/test_hostile_runs.py::test_numbers_that_no_learner_has_are_no_checkpoint",
+            "learning/training/test_hostile_runs.py::test_arrays_that_no_learner_has_are_no_checkpoint",
+        ),
+        "settings that take any memory, or with which a learner never looks whether it is to stop": (
+            "learning/training/test_hostile_runs.py::test_settings_that_take_any_memory_or_never_look_are_refused",
+        ),
+        "event lines without end": (
+            "learning/training/test_hostile_runs.py::test_events_without_end_are_read_at_their_end",
+            "learning/training/test_hostile_runs.py::test_a_line_that_is_too_long_is_passed_over_and_cut_off_nowhere",
+        ),
+        "a sweep whose lock names another process, or all of the user's": (
+            "learning/training/test_hostile_runs.py::test_a_sweep_of_somebody_elses_ends_no_process_of_ones_own",
+        ),
+        "findings about one submission in the place of another's": (
+            "grader/evidence/test_findings.py::test_a_changed_word_regrades_a_class_without_a_program",
+        ),
+        "a package whose name leads out of its folder": (
+            "ros/test_packages.py::test_a_name_that_cannot_be_a_folders_is_none",
+        ),
         "a forged frame that says the level is out of reach, so that it is lowered": (
             "grader/test_confinement_level.py::test_a_program_that_blames_the_machine_is_confined_and_fails",
             "host/test_states.py::test_every_frame_in_every_state",
@@ -379,6 +403,10 @@ FOURTH_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingPro
 WITHSTOOD: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "left for the next grading: System V and POSIX objects, named semaphores, keyrings, attributes, namespaces of a thread": NO_ATTACK,
+        "other processes of the user: their priority, processors, limits, leases on common files, 100 rarer calls": NO_ATTACK,
+        "pictures: remarks that unpack to 200 MB, comments of 20 MB, many pages, 10,446 damaged ones of eight formats": (
+            "mapmaking/test_photo.py::test_whatever_a_decoder_makes_of_a_damaged_file_it_is_a_sentence",
+        ),
         "signals and groups: stopped by itself, stopped by a thread, a session of its own and an abort": (
             "grader/test_attacks.py::test_nobody_gains_anything_in_other_ways",
         ),
