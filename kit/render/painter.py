@@ -102,7 +102,7 @@ class Painter:
         if view != self._view:
             across, down = self.encoder.across, self.encoder.down
             grid = _draw_walls(scene.walls, *view, self.encoder)
-            grid[self._floor_map.solid_dots(camera, across, down)] = Role.WALL
+            np.copyto(grid, np.uint8(Role.WALL), where=self._floor_map.solid_dots(camera, across, down))
             self._wall_grid, self._walls, self._view = grid, scene.walls, view
             self._rings.clear()
             self._wall_cells = raster.drawn_cells(grid, across, down)

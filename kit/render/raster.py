@@ -109,8 +109,8 @@ def drawn_cells(grid: Grid, across: int, down: int) -> BoolArray:
 def close_gaps(grid: Grid, across: int, down: int, role: int) -> None:
     """Fills up to this many empty dots between two drawn ones of a column, and then of a row: in this order the
     corner between two walls is filled with them."""
-    grid.T[_short_gaps(grid.T > 0, down)] = role
-    grid[_short_gaps(grid > 0, across)] = role
+    np.copyto(grid.T, np.uint8(role), where=_short_gaps(np.ascontiguousarray(grid.T > 0), down))
+    np.copyto(grid, np.uint8(role), where=_short_gaps(grid > 0, across))
 
 
 def _short_gaps(drawn: BoolArray, longest: int) -> BoolArray:

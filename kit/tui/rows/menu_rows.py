@@ -44,15 +44,15 @@ class MenuItem:
 
 MENU: Final = (
     MenuItem("next_lesson", "Next lesson", ""),
-    MenuItem("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
+    MenuItem("lessons", "Lessons", "In order: predict, run, explain, change, make."),
     MenuItem("drive", "Drive", "Any map and any program, your own too."),
-    MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
+    MenuItem("levels", "Levels", "The game: drive for medals, race programs and agents."),
     MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
     MenuItem("layers", "Layers", "The fewest layers for what must collide and be seen."),
     MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
-    MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
+    MenuItem("form", "Form", "What you knew before, and what you have learned."),
     MenuItem("progress", "Progress", "What you have done, and how to export it."),
-    MenuItem("league", "League", "Your programs and agents against everybody's: races, tag, ratings."),
+    MenuItem("league", "League", "Programs and agents race, play tag and are rated."),
 )
 MENU_KEYS: Final = "123456789l"
 """The keys of its lines."""

@@ -8,7 +8,7 @@ from typing import Final
 
 from kit.document.blocks import Block
 from kit.document.layout import Page, rows_of
-from kit.document.rows import MARGIN, Row, row
+from kit.document.rows import MARGIN, Row, at_both_edges, row, row_width
 from kit.school.game.medal_in_reach import MedalInReach
 from kit.school.lessons.catalogue import LessonEntry
 from kit.tui.rows.lesson_list_rows import TITLE
@@ -22,6 +22,8 @@ WEEKDAYS: Final = ("Mon", "", "Wed", "", "Fri", "", "Sun")
 MOST_WEEKS: Final = 26
 LEVEL_TITLE: Final = 17
 """Columns of a level's title."""
+HEAD: Final = 10
+"""Columns before a lesson's title."""
 STEPS: Final = 15
 """Columns of a lesson's steps."""
 ROOM_FOR_STEPS: Final = 80
@@ -115,10 +117,10 @@ def short_lesson_rows(shelf: Iterable[LessonEntry], columns: int) -> list[Row]:
     for entry in shelf:
         progress, parts = entry.progress, _lesson_row(entry)
         if progress is not None:
-            blanks = " " * max(0, TITLE - len(entry.title))
             bar = f"{progress_bar(progress):<{STEPS}}" if columns >= ROOM_FOR_STEPS else ""
             earned = " ".join(stars(progress, one.name) for one in progress.lesson.exercises)
-            parts = (*parts, *row(f"{blanks}  {bar}", (earned if entry.has_started else "", "dim")))
+            beside = row(" ", bar, (earned, "dim")) if entry.has_started else row(" ", bar)
+            parts = at_both_edges(parts, (), min(HEAD + TITLE + 1, columns - row_width(beside))) + beside
         made.append(parts)
     return made
 
