@@ -13,7 +13,7 @@ from kit.geometry import Pose
 from kit.host.wire import Json, ProtocolError, boolean, integer, items, number, text
 from kit.school.game.two_players import PLAYERS, SharedGameState, SharedMode, SharedPhase
 
-VERSION: Final = 3
+VERSION: Final = 4
 MAX_FRAME: Final = 4096
 """Bytes of a frame, in both directions."""
 MAX_PLAYER_NAME: Final = 24
@@ -95,7 +95,7 @@ def encode_state(state: SharedGameState) -> Json:
     poses: Json = [[round(each, 4) for each in pose] for pose in state.poses]
     scores: Json = [round(each, 2) for each in state.scores]
     watching: Json = list(state.watching[:MAX_WATCHING])
-    who: Json = [state.catcher, state.winner, list(state.names), state.asks_again, watching]
+    who: Json = [state.catcher, state.winner, list(state.names), state.asks_again, watching, state.has_left]
     return ["state", state.phase.value, round(state.seconds, 3), poses, scores, *who]
 
 
@@ -128,7 +128,9 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             boolean(plays),
         )
     if kind == "state":
-        phase, seconds, poses, scores, catcher, winner, names, asks_again, watching = items(rest, 9)
+        phase, seconds, poses, scores, catcher, winner, names, asks_again, watching, has_left = items(
+            rest, 10
+        )
         if len(items(watching)) > MAX_WATCHING:
             raise ProtocolError(f"more than {MAX_WATCHING} spectators")
         return SharedGameState(
@@ -141,6 +143,7 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             tuple(text(each, MAX_PLAYER_NAME) for each in items(names, PLAYERS)),
             boolean(asks_again),
             tuple(_read_name(each) for each in items(watching)),
+            boolean(has_left),
         )
     raise ProtocolError("a frame of an unknown kind")
 

@@ -82,6 +82,8 @@ class SharedGameState:
     """Whether the second player asks for another game, after one that is over."""
     watching: tuple[str, ...] = ()
     """Names of those who only watch."""
+    has_left: bool = False
+    """Whether it is over because the player who has not won has left."""
 
     def next_targets(
         self, targets: Sequence[tuple[float, float]], player: int | None
@@ -213,12 +215,13 @@ class SharedGame(SharedReferee):
         self._runner = runner
         self._players = tuple(_Player(runner.simulation.command_topics(robot)) for robot in self.robots)
         self._has_second = False
-        self._asks_again = False
+        self._asks_again = self._has_left = False
         self._first_catcher = self._catcher
 
     @property
     def state(self) -> SharedGameState:
-        return replace(super().state, asks_again=self._asks_again and self.is_over)
+        asks_again = self._asks_again and self.is_over
+        return replace(super().state, asks_again=asks_again, has_left=self._has_left)
 
     def push(self, player: int, linear: float, angular: float) -> None:
         """What a player's keys ask for now, forward and left, each from -1 to 1; more is cut. From any thread."""
@@ -241,6 +244,7 @@ class SharedGame(SharedReferee):
         self._has_second = False
         if self._phase is SharedPhase.RUNNING:
             self._winner = 1 - player
+            self._has_left = True
             self._enter(SharedPhase.OVER)
         elif self._phase is SharedPhase.COUNTDOWN:
             self._enter(SharedPhase.WAITING)
@@ -252,7 +256,7 @@ class SharedGame(SharedReferee):
             return
         self._scores = [0.0] * PLAYERS
         self._winner = None
-        self._asks_again = False
+        self._asks_again = self._has_left = False
         if self._first_catcher is not None:
             self._first_catcher = 1 - self._first_catcher
         self._catcher = self._first_catcher

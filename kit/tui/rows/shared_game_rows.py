@@ -130,6 +130,7 @@ def _score_text(mode: SharedMode, state: SharedGameState, number: int) -> str:
 def _end_text(state: SharedGameState, me: int | None) -> str:
     if state.winner is None:
         return "Nobody has won."
+    left = f": {state.names[1 - state.winner] or 'the other player'} has left" if state.has_left else ""
     if me is not None:
-        return "You have won." if state.winner == me else "The other player has won."
-    return f"{state.names[state.winner] or NOBODY} has won."
+        return f"You have won{left}." if state.winner == me else "The other player has won."
+    return f"{state.names[state.winner] or NOBODY} has won{left}."

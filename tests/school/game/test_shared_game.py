@@ -199,7 +199,9 @@ def test_who_leaves_has_lost(race: tuple[Session, SharedGame]) -> None:
     game.start()
     until(session, COUNTDOWN + 0.1)
     game.remove_player(1)
-    assert (game.state.phase, game.state.winner) == (SharedPhase.OVER, 0)
+    assert (game.state.phase, game.state.winner, game.state.has_left) == (SharedPhase.OVER, 0, True)
+    game.rematch()
+    assert not game.state.has_left
 
 
 def test_in_tag_who_is_caught_catches_and_less_time_wins(
@@ -270,7 +272,11 @@ def test_frames_come_back_as_they_were() -> None:
     assert parse_from_guest(encode_rematch_request()) == RematchRequest()
     assert parse_from_host(encode_state(STATE)) == STATE
     asked = replace(
-        STATE, asks_again=True, names=("\N{GRINNING FACE}" * MAX_PLAYER_NAME,) * 2, watching=("Eve",)
+        STATE,
+        asks_again=True,
+        names=("\N{GRINNING FACE}" * MAX_PLAYER_NAME,) * 2,
+        watching=("Eve",),
+        has_left=True,
     )
     assert parse_from_host(encode_state(asked)) == asked
     many = replace(asked, watching=asked.names[:1] * 2 * MAX_WATCHING)
@@ -286,17 +292,18 @@ BAD_FROM_GUEST: tuple[Json, ...] = (
 )  # fmt: skip
 BAD_FROM_HOST: tuple[Json, ...] = (
     ["push", 0.0, 0.0], ["offer", VERSION, "x" * 100, "race", "a", True], ["offer", VERSION, "a", "chess", "a", True],
-    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None, ["a", "b"], False, []],
-    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None, ["a", "b"], False, []],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None, ["a", "b"], False, []],
-    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, []],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None, ["a", "b"], False, []],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a"], False, []],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a" * 1000, "b"], False, []],
-    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, []],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], 1, []],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a"] * 99],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a" * 99]],
+    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
+    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
+    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None, ["a", "b"], False, [], False],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a"], False, [], False],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a" * 1000, "b"], False, [], False],
+    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], 1, [], False],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], 1],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a"] * 99, False],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a" * 99], False],
 )  # fmt: skip
 
 
@@ -325,6 +332,7 @@ def test_numbers_and_names_of_frames_go_up_to_their_limits() -> None:
             [name, "b"],
             False,
             [],
+            False,
         ]
 
     most = (MAX_SECONDS, -MAX_COORDINATE, MAX_SECONDS, "n" * MAX_PLAYER_NAME)

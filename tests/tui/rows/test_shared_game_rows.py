@@ -34,6 +34,12 @@ def test_a_rematch_is_offered_and_asked_for(me: int | None, before: str, after: 
     assert ("rematch" in said(OVER, me)) == (me == 1)
 
 
+@pytest.mark.parametrize("me", [HOST, None])
+def test_who_wins_because_the_other_one_has_left_is_told_so(me: int | None) -> None:
+    assert "Ben has left" in said(replace(OVER, has_left=True), me)
+    assert "has left" not in said(OVER, me)
+
+
 @pytest.mark.parametrize(
     ("me", "players"), [(HOST, "you against Ben"), (1, "you against Ada"), (None, "Ada against Ben")]
 )
