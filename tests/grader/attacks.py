@@ -147,6 +147,9 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "a sweep whose lock names another process, or all of the user's": (
             "learning/training/test_hostile_runs.py::test_a_sweep_of_somebody_elses_ends_no_process_of_ones_own",
         ),
+        "one drive in the places of all levels of a board, of which each is run again": (
+            "school/game/test_leaderboard.py::test_one_drive_in_the_places_of_all_levels_makes_nobody_wait",
+        ),
         "findings about one submission in the place of another's": (
             "grader/evidence/test_findings.py::test_a_changed_word_regrades_a_class_without_a_program",
         ),

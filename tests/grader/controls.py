@@ -278,6 +278,13 @@ CONTROLS: Final = (
         "grader/cohort/test_class_list.py::test_what_a_student_typed_into_the_worksheet_costs_nobody_a_grade",
     ),
     Control(
+        "one drive in the places of all levels of a board",
+        "kit/school/game/leaderboard.py",
+        "(hashlib.sha256(content).digest(), level.id, driver)",
+        '(hashlib.sha256(content).digest(), "", driver)',
+        "school/game/test_leaderboard.py::test_one_drive_in_the_places_of_all_levels_makes_nobody_wait",
+    ),
+    Control(
         "findings about another submission",
         "grader/cohort/queue.py",
         '            if content["of"] != of:\n',

@@ -320,6 +320,19 @@ def test_many_files_of_one_user_make_nobody_wait(
     assert len(run_again_here) <= 5
 
 
+def test_one_drive_in_the_places_of_all_levels_makes_nobody_wait(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_again_here: list[bytes]
+) -> None:
+    board = join(tmp_path / "board", by_hand())
+    for level in LEVELS[1:]:
+        shutil.copy(own_file(board), own_file(board, level.id))
+    monkeypatch.setattr(
+        leaderboard, "MAX_TICKS_OF_ONE_USER", (by_hand().ticks + leaderboard.TICKS_OF_A_FILE) // 4
+    )
+    read_entries(board, LEVELS)
+    assert 1 <= len(run_again_here) <= len(LEVELS) // 4 + 1
+
+
 def test_files_that_unpack_to_megabytes_make_nobody_wait(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
