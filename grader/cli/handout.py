@@ -71,7 +71,7 @@ def release(
     \b
     grader release hall --output hall-for-students
     grader release hall --output hall.zip
-    grader release hall --output hall-template --repository --kit https://HOST/PATH@v1
+    grader release hall --output repo --repository --kit https://HOST/PATH@v1
 
     The secret seeds, solution, wrong solutions and reference stay, and so do criteria that students may not see yet. It is
     refused where a secret would go out all the same: in another file, in an archive, as a passage of the solution.

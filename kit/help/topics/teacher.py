@@ -31,7 +31,7 @@ the criterion in its name. `grader help sheet` explains every key, `grader help 
             """
     grader release one --output one-for-students
     grader release one --output one.zip
-    grader release one --output one-template --repository --kit https://example.org/kit@v0.2.0
+    grader release one --output repo --repository --kit https://example.org/kit@v0.2.0
 
 Students get everything but what stays with you: secret seeds, solution, wrong solutions, and criteria whose outcome they may
 not see yet. It is refused where a secret would go out all the same: in another file, in an archive, as a passage of the
