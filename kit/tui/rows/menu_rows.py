@@ -88,7 +88,7 @@ def menu(
     if is_wide and won:
         level = next_level_rows(overview, picture)
         won = side_by_side(level, won_rows(overview, width - PICTURE - MARGIN), PICTURE + MARGIN)
-    for part in (today_rows(overview, width), won):
+    for part in (today_rows(overview, width, room - len(rows)), won):
         if part and len(rows) + len(part) <= room:
             rows += part
     return rows
@@ -116,8 +116,11 @@ def next_level_rows(overview: StudentOverview, picture: Sequence[str]) -> list[R
             row("  ", (f"4  {name}", "dim"))]  # fmt: skip
 
 
-def today_rows(overview: StudentOverview, width: int = PANEL_WIDTH - FRAME) -> list[Row]:
-    """What is open today: the day's maze, the next medal in reach, questions that are due, trainings that run."""
+def today_rows(
+    overview: StudentOverview, width: int = PANEL_WIDTH - FRAME, room: int = WIDE_ROWS
+) -> list[Row]:
+    """What is open today: the day's maze, the next medal in reach, questions that are due, trainings that run; those for which
+    there is ``room``, in rows."""
     if overview.problem:
         return []
     maze = "driven today" if overview.has_run_today else "not driven yet"
@@ -134,9 +137,10 @@ def today_rows(overview: StudentOverview, width: int = PANEL_WIDTH - FRAME) -> l
     rows = [row(" ", *ruled_title("today", width - 1))]
     for word, text in lines:
         first, *rest = wrap(text, width - MARGIN - WORD)
-        rows.append(row("  ", (f"{word:<{WORD}}", "dim"), first))
-        rows += [row("  ", " " * WORD, each) for each in rest]
-    return rows
+        if len(rows) + 1 + len(rest) <= room:
+            rows.append(row("  ", (f"{word:<{WORD}}", "dim"), first))
+            rows += [row("  ", " " * WORD, each) for each in rest]
+    return rows if len(rows) > 1 else []
 
 
 def won_rows(overview: StudentOverview, width: int = PANEL_WIDTH - FRAME) -> list[Row]:

@@ -27,6 +27,8 @@ HEAD: Final = 10
 STEPS: Final = 15
 """Columns of a lesson's steps."""
 ROOM_FOR_STEPS: Final = 80
+EARNED: Final = 11
+"""Columns of the stars of three exercises."""
 BUSY: Final = ((1, "░"), (5, "▒"), (15, "█"))
 """From how many things that were learned on a day on which sign stands for it."""
 
@@ -119,6 +121,7 @@ def short_lesson_rows(shelf: Iterable[LessonEntry], columns: int) -> list[Row]:
         if progress is not None:
             bar = f"{progress_bar(progress):<{STEPS}}" if columns >= ROOM_FOR_STEPS else ""
             earned = " ".join(stars(progress, one.name) for one in progress.lesson.exercises)
+            earned = f"{earned:<{EARNED}}"
             beside = row(" ", bar, (earned, "dim")) if entry.has_started else row(" ", bar)
             parts = at_both_edges(parts, (), min(HEAD + TITLE + 1, columns - row_width(beside))) + beside
         made.append(parts)

@@ -62,6 +62,15 @@ def test_today_names_the_maze_the_medal_the_questions_and_the_trainings() -> Non
     assert "due" not in over
 
 
+def test_today_names_what_there_is_room_for() -> None:
+    rows = today_rows(FULL)
+    for room in range(len(rows) + 1):
+        fitting = [row_text(each) for each in today_rows(FULL, room=room)]
+        assert len(fitting) <= room
+        assert any("not driven yet" in each for each in fitting) is (room >= 3), room
+        assert len(fitting) != 1, "no title alone"
+
+
 def test_a_journal_that_cannot_be_read_tells_of_no_day() -> None:
     assert today_rows(StudentOverview(problem="damaged")) == []
     assert menu(None, 0, 100) == menu(None, 0, 18)
