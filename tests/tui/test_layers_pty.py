@@ -40,7 +40,7 @@ def test_from_the_first_case_to_a_proof_and_out(layers: Open) -> None:
     user.until(lambda: user.text.startswith("slides-lasers"), "the slides' case")
     user.send(b"2\x1b[C\x1b[C")
     user.until(lambda: "layer 3 of 6" in user.text, "the third clique")
-        user.until(lambda: "[M2]" in user.text, "the picture of it")
+    user.until(lambda: "[M2]" in user.text, "the picture of it")
     user.send(b"3")
     user.until(lambda: "10 layers, and no plan has fewer." in user.text, "the optimum")
     user.send(b"4")
