@@ -36,7 +36,7 @@ COPIED: Final = (
 LIMIT_S: Final = 600.0
 """Wall clock of one test."""
 HANG_S: Final = 60.0
-"""Wall clock after which a test that never ends without its defence is ended; at least five times what it takes with it."""
+"""Wall clock after which a test that never ends without its defence is ended; at least three times what it takes with it."""
 BROKEN: Final = re.compile(
     r"^E +(NameError|UnboundLocalError|ImportError|ModuleNotFoundError):", re.MULTILINE
 )
@@ -93,6 +93,7 @@ CONTROLS: Final = (
         "most = MAX_REPEATS if name in REPEATS else MAX_COUNT",
         "most = MAX_COUNT",
         "learning/training/test_hostile_runs.py::test_settings_that_take_any_memory_or_never_look_are_refused",
+        hangs=True,
     ),
     Control(
         "settings of somebody else's run that take any memory",
@@ -107,6 +108,7 @@ CONTROLS: Final = (
         "            if skips := size - self._offset > MAX_READ_BYTES:\n",
         "            if skips := size < 0:\n",
         "learning/training/test_hostile_runs.py::test_events_without_end_are_read_at_their_end",
+        hangs=True,
     ),
     Control(
         "an event that is longer than any",
@@ -1192,7 +1194,7 @@ def see(control: Control, folder: Path) -> Seen:
     changed.unlink()
     try:
         changed.write_text(text.replace(control.defence, control.without), "utf-8")
-        code, output = _run(control, folder, max(HANG_S, 5 * taken_s) if control.hangs else LIMIT_S)
+        code, output = _run(control, folder, max(HANG_S, 3 * taken_s) if control.hangs else LIMIT_S)
     finally:
         changed.unlink()
         _link(ROOT / control.file, changed)
