@@ -12,13 +12,13 @@ from types import MappingProxyType
 from typing import Final, Literal
 
 from kit.tui.input.drive_keys import drive_key, named
-from kit.tui.input.modes import Clock, DriveMode, ExactMode, KeyEventKind, LatchMode, RepeatMode
+from kit.tui.input.modes import Clock, DriveMode, ExactMode, HoldMode, KeyEventKind, LatchMode
 from kit.tui.input.protocol import reports_releases
 
 ModeName = Literal["exact", "hold", "latch"]
 
 _MODES: Final[Mapping[ModeName, Callable[[Clock], DriveMode]]] = MappingProxyType(
-    {"exact": ExactMode, "hold": RepeatMode, "latch": LatchMode}
+    {"exact": ExactMode, "hold": HoldMode, "latch": LatchMode}
 )
 MODE_TEXTS: Final[Mapping[ModeName, str]] = MappingProxyType(
     {
@@ -98,7 +98,7 @@ class KeyboardDrive:
     def status(self) -> str:
         """One line for the status bar: the mode, what it means, why; or what would be better."""
         choice = self.choice
-        if isinstance(self._mode, RepeatMode) and self._mode.rhythm.uneven:
+        if isinstance(self._mode, HoldMode) and self._mode.rhythm.uneven:
             return "hold: keys arrive unevenly over this link; latch mode would drive better"
         return f"{choice.mode}: {MODE_TEXTS[choice.mode]} ({choice.reason})"
 
@@ -110,7 +110,7 @@ class KeyboardDrive:
     @property
     def timeouts(self) -> tuple[float, float] | None:
         """The silence [s] that releases a key in the mode ``hold``, after its press and after a repeat; None in other modes."""
-        if not isinstance(self._mode, RepeatMode):
+        if not isinstance(self._mode, HoldMode):
             return None
         return self._mode.rhythm.first_timeout, self._mode.rhythm.next_timeout
 

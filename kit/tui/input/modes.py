@@ -97,7 +97,7 @@ class ExactMode:
 
 @dataclass(slots=True)
 class _Hold:
-    """A key that RepeatMode takes to be down."""
+    """A key that HoldMode takes to be down."""
 
     row: DriveKey
     since: float
@@ -118,7 +118,7 @@ class _Hold:
         return 1.0 if now - self.since < NUDGE else BRIDGE
 
 
-class RepeatMode:
+class HoldMode:
     """No releases: a key is down while the keyboard repeats it, by timeouts learned from its rhythm.
 
     A press pushes at full strength for NUDGE, then at BRIDGE until the first repeat. Keys held when another

@@ -10,7 +10,7 @@ import pytest
 
 from kit.tui.input.drive import KeyboardDrive
 from kit.tui.input.key_rhythm import Rhythm
-from kit.tui.input.modes import RepeatMode
+from kit.tui.input.modes import HoldMode
 
 ONE_WAY = 0.03
 TAP = 0.08
@@ -86,7 +86,7 @@ def session(keyboard: Keyboard, jitter: float, seed: int, times: int) -> Drives:
         else:
             drives.taps.append(ends[-1] - changes[0][0])
         start = now[0] + float(random.uniform(0.3, 2.0))
-    assert isinstance(drive._mode, RepeatMode)
+    assert isinstance(drive._mode, HoldMode)
     drives.learned = drive._mode.rhythm
     return drives
 

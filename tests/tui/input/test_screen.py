@@ -16,7 +16,7 @@ from textual.widgets import Input, Static
 from kit.tui.app import KitApp
 from kit.tui.input.drive import DriveState
 from kit.tui.input.key_parser import KeyboardAnswer, KeyReleased, KeyRepeated
-from kit.tui.input.modes import RepeatMode
+from kit.tui.input.modes import HoldMode
 from kit.tui.input.screen import DriveScreen
 from kit.tui.terminal import TerminalFacts, decide_terminal
 from tests.waiting import wait_until_shown
@@ -98,7 +98,7 @@ def test_a_bad_link_shows_in_the_status() -> None:
     async def scene(screen: Recorder, pilot: Pilot[None]) -> None:
         shown: list[str] = []
         screen.drive_status_changed = lambda: shown.append(screen.drive.status)  # type: ignore[method-assign]  # a spy
-        assert isinstance(screen.drive._mode, RepeatMode)
+        assert isinstance(screen.drive._mode, HoldMode)
         screen.drive._mode.rhythm.uneven = True
         await pilot.press("w")
         assert len(shown) == 1
