@@ -6,14 +6,17 @@ A reader may look at any time, also while a line is half written; a writer may b
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal, Self, TypeAlias
+from typing import Any, Literal, Self, TypeAlias
 
 from kit.field_types import check_field_types
+from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.line_log import LineLog, LineReader
+from kit.plain_text import escape_controls
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,9 @@ class TrainingProgress:
     measures: dict[str, float] = field(default_factory=dict)
     """What the learner measures of its own learning, by the names of ``kit.learning.training.measures``."""
 
+    def __post_init__(self) -> None:
+        _check_counts(self.episodes)
+
 
 @dataclass(frozen=True, slots=True)
 class Evaluated:
@@ -67,6 +73,12 @@ class Evaluated:
     """Why training stopped or went back, if it did."""
     adjacency: float | None = None
     """Mean share of an episode's steps that two robots were side by side; None for one robot."""
+
+    def __post_init__(self) -> None:
+        _check_counts(self.cases)
+        if not self.cases:
+            raise ValueError("a test of no case")
+
     measures: dict[str, float] = field(default_factory=dict)
     """As in ``TrainingProgress``."""
 
@@ -104,20 +116,44 @@ EVENT_TYPES: Mapping[str, type[TrainingEvent]] = MappingProxyType(
 _EVENT_NAMES = {kind: name for name, kind in EVENT_TYPES.items()}
 
 
+def _check_counts(by_case: Mapping[str, Sequence[int]]) -> None:
+    """ValueError for anything but the number of episodes that ended in each outcome."""
+    for case, counts in by_case.items():
+        if len(counts) != len(EpisodeOutcome) or min(counts) < 0:
+            raise ValueError(f"{case}: {counts} are not the episodes that ended in each outcome")
+
+
 def encode_event(event: TrainingEvent) -> bytes:
     """A line of JSON, without its end."""
     return json.dumps({"event": _EVENT_NAMES[type(event)], **asdict(event)}).encode()
 
 
 def decode_event(line: bytes) -> TrainingEvent | None:
-    """The event; None if it is damaged."""
+    """The event; None if it is damaged. Its texts are as a terminal may show them, and its numbers finite: the run may be
+    somebody else's."""
     try:
-        data = json.loads(line)
+        data = _shown_safely(json.loads(line))
         kind = EVENT_TYPES[data.pop("event")]
         check_field_types(kind, data)
+        if any(data.get(name, 0) < 0 for name in ("steps", "seconds")):
+            return None
         return kind(**data)
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
+
+
+def _shown_safely(value: Any) -> Any:
+    """The same without control characters. ValueError for a number that is not finite."""
+    match value:
+        case str():
+            return escape_controls(value)
+        case list():
+            return [_shown_safely(each) for each in value]
+        case dict():
+            return {escape_controls(name): _shown_safely(each) for name, each in value.items()}
+        case float() if not math.isfinite(value):
+            raise ValueError(f"{value} is no measure")
+    return value
 
 
 class EventWriter:

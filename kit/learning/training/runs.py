@@ -29,6 +29,7 @@ from kit.learning.training.process_lock import LockedError, is_locked, process_l
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.training_summary import TrainingCommand, TrainingSummary, summarise_events
 from kit.plain_files import open_plain_file, read_plain_file
+from kit.plain_text import escape_controls
 from kit.workspace import write_atomically
 
 MAX_CONFIG_BYTES: Final = 16 << 20
@@ -37,6 +38,8 @@ MAX_COMMAND_BYTES: Final = 100
 """Bytes of ``control``."""
 LOG_END_BYTES: Final = 64 << 10
 """Bytes at the end of the log, in which its last line is."""
+MAX_SHOWN: Final = 1000
+"""Characters of that line which are shown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,14 +93,15 @@ class TrainingRun:
 
     @property
     def last_log_line(self) -> str:
-        """The last line that the newest process printed: why it ended, where it could not write that among the events."""
+        """The last line that the newest process printed, or its beginning: why it ended, where it could not write that among the
+        events."""
         try:
             with open_plain_file(self.log) as file:
                 file.seek(max(0, file.seek(0, os.SEEK_END) - LOG_END_BYTES))
                 lines = file.read(LOG_END_BYTES).decode(errors="replace").split("\n")
         except FileNotFoundError:
             return ""
-        return next((line.strip() for line in reversed(lines) if line.strip()), "")
+        return escape_controls(next(filter(None, map(str.strip, reversed(lines))), "")[:MAX_SHOWN])
 
     def config(self) -> RunConfig:
         """RunError if it is missing or damaged."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import signal
 import subprocess
@@ -22,7 +23,7 @@ from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.sandbox_config import Level
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.crosstable import TEST_FILE, crosstable_columns
-from kit.learning.training.events import TrainingNote, TrainingProgress, encode_event
+from kit.learning.training.events import TrainingNote, TrainingProgress, decode_event, encode_event
 from kit.learning.training.process_lock import process_lock
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.run_folders import create_run
@@ -212,6 +213,46 @@ def test_events_without_end_are_read_at_their_end(tmp_path: Path) -> None:
     tracemalloc.stop()
     assert run.summary().steps == 5
     assert train(run).how == "finished", "its newest line is whole, so it can be trained on"
+
+
+@every_case(
+    "event",
+    [
+        {"event": "examined", "steps": 1, "seconds": 1.0, "cases": cases, "kept": False}
+        for cases in ({}, {"ahead": []}, {"ahead": [1, 2]}, {"ahead": [1] * 50}, {"ahead": [5, -2, 0]})
+    ],
+)
+def test_counts_of_other_outcomes_than_there_are_are_no_event(event: Mapping[str, object]) -> None:
+    assert decode_event(json.dumps(event).encode()) is None
+    assert decode_event(json.dumps({**event, "cases": {"ahead": [5, 2, 0]}}).encode()) is not None
+
+
+@every_case(
+    "numbers", [{"seconds": math.nan}, {"reward": math.inf}, {"steps": -1}, {"seconds": -1.0}], ids=str
+)
+def test_numbers_that_measure_nothing_are_no_event(numbers: Mapping[str, float]) -> None:
+    progress = TrainingProgress(1, 1.0, 1.0, {"ahead": [1, 0, 0]}, 0.0, 1.0, {})
+    assert decode_event(encode_event(progress)) == progress
+    assert decode_event(encode_event(replace(progress, **numbers))) is None
+
+
+def test_what_a_run_of_somebody_elses_says_commands_no_terminal(tmp_path: Path) -> None:
+    command = "\x1b[2J\x1b]0;title\x07\u202e"
+    run = create_run(tmp_path, CONFIG, "theirs")
+    run.events_file.write_bytes(
+        encode_event(TrainingProgress(1, 1.0, 1.0, {command: [1, 0, 0]}, 0.0, 1.0, {command: 0.0}))
+        + b"\n"
+        + encode_event(TrainingNote(command))
+        + b"\n"
+    )
+    run.log.write_text(f"{command * 10_000}\n")
+    progress, note = run.events()
+    assert isinstance(progress, TrainingProgress)
+    assert isinstance(note, TrainingNote)
+    for text in (*progress.episodes, *progress.terms, note.text, run.last_log_line):
+        assert text.isprintable()
+        assert "[2J" in text
+    assert len(run.last_log_line) < 10_000
 
 
 def test_a_line_that_is_too_long_is_passed_over_and_cut_off_nowhere(tmp_path: Path) -> None:
