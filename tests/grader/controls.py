@@ -60,6 +60,20 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "a run whose events command a terminal",
+        "kit/learning/training/events.py",
+        "data = _shown_safely(json.loads(line))",
+        "data = json.loads(line)",
+        "learning/training/test_hostile_runs.py::test_what_a_run_of_somebody_elses_says_commands_no_terminal",
+    ),
+    Control(
+        "a run that counts other outcomes than there are",
+        "kit/learning/training/events.py",
+        "        if len(counts) != len(EpisodeOutcome) or min(counts) < 0:",
+        "        if not counts:",
+        "learning/training/test_hostile_runs.py::test_counts_of_other_outcomes_than_there_are_are_no_event",
+    ),
+    Control(
         "a reward in somebody else's run, with one's own rights",
         "kit/learning/tasks/student_reward.py",
         "level=highest_level_up_to(max(Level)))",
