@@ -140,8 +140,12 @@ class League(JobFolder):
 
     @property
     def owner(self) -> int:
-        """The number of the user whose results count. Raises LeagueError, also where another user than the folder's own could have
-        put that file there in place of it."""
+        """The number of the user whose results count. Raises LeagueError."""
+        return self._check_manifest()
+
+    def _check_manifest(self) -> int:
+        """Returns whose file the league's list is. Raises LeagueError if there is none, and where another user than the folder's own
+        could have put that file there in place of it."""
         try:
             folder, owner = self.folder.stat(), (self.folder / MANIFEST).lstat().st_uid
         except OSError:
@@ -154,8 +158,8 @@ class League(JobFolder):
         return owner
 
     def programme(self) -> Programme:
-        """Raises LeagueError, as ``owner`` does: whose list it is counts as much as what stands in it."""
-        _ = self.owner
+        """Raises LeagueError."""
+        self._check_manifest()
         try:
             content = read_plain_file(self.folder / MANIFEST, MAX_MANIFEST_BYTES)
         except OSError:
