@@ -6,13 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import date, timedelta
 from typing import Final
 
-from kit.document.blocks import Block
+from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Tone, ToneText
 from kit.document.layout import Page, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, row, row_width
 from kit.school.game.medal_in_reach import MedalInReach
 from kit.school.lessons.catalogue import LessonEntry
 from kit.tui.rows.lesson_list_rows import TITLE
-from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.rows.progress_marks import mark, progress_bar, stars
 from kit.tui.rows.ruled_title import ruled_title
 
@@ -20,8 +19,6 @@ STARS_LEGEND: Final = ("an exercise: *** all points, **. half", "or more, *.. so
 """What ``stars`` means, on the page of progress."""
 WEEKDAYS: Final = ("Mon", "", "Wed", "", "Fri", "", "Sun")
 MOST_WEEKS: Final = 26
-LEVEL_TITLE: Final = 17
-"""Columns of a level's title."""
 HEAD: Final = 10
 """Columns before a lesson's title."""
 STEPS: Final = 15
@@ -88,17 +85,20 @@ def calendar_rows(days: Mapping[date, int], today: date, columns: int) -> list[R
     return [*rows, row((f"{' ' * label}{legend}", "dim"))]
 
 
-def reach_rows(medals: Iterable[MedalInReach]) -> list[Row]:
+def reach_table(medals: Iterable[MedalInReach]) -> Table:
     """The next medals, with what was driven and what they ask for."""
-    return [
-        row(
-            f"  {each.level.title:<{LEVEL_TITLE}.{LEVEL_TITLE}} ",
-            (f"{each.driver.phrase:<11}{each.seconds:>7.2f} s  ", "dim"),
-            (each.medal.title, MEDAL_STYLES[each.medal]),
-            f" at {each.asked:.2f} s",
+    rows: list[tuple[Cell, ...]] = [
+        (
+            each.level.title,
+            ToneText(each.driver.phrase, Tone.DIM),
+            ToneText(f"{each.seconds:.2f} s", Tone.DIM),
+            ToneText(each.medal.title, Tone.BOLD),
+            f"at {each.asked:.2f} s",
         )
         for each in medals
     ]
+    text = Column("", CellStyle.TEXT)
+    return Table("reach", "", (text, text, Column(""), text, Column("")), tuple(rows))
 
 
 def lesson_rows(shelf: Sequence[LessonEntry]) -> list[Row]:

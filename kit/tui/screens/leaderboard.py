@@ -31,7 +31,7 @@ from kit.tui.rows.leaderboard_rows import (
     times_to_beat,
     todays_times,
 )
-from kit.tui.rows.progress_rows import reach_rows
+from kit.tui.rows.progress_rows import reach_table
 from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_pictures import picture_of
@@ -122,18 +122,15 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         """Today's level with its board, and the player's next medals."""
         level = daily_level(today())
         columns, glyphs = self._today_columns - MARGIN, self._theme.terminal.glyphs.value
-        times = table_rows(todays_times(entries), columns).entries
-        nearest = medals_in_reach(own)[:MOST_IN_REACH]
+        times = _rows_of(todays_times(entries), columns)
+        nearest = _rows_of(reach_table(medals_in_reach(own)[:MOST_IN_REACH]), columns)
         return [
             ruled_title("today's level", columns, level.title),
             *map(row, picture_of(level, columns, MAP_ROWS, glyphs)),
             row(),
-            *(
-                [each for rows in times for each in rows]
-                or [row(("Nobody on the board has driven it yet.", "dim"))]
-            ),
+            *(times or [row(("Nobody on the board has driven it yet.", "dim"))]),
             row(),
-            *([ruled_title("your nearest medals", columns), *reach_rows(nearest)] if nearest else []),
+            *([ruled_title("your nearest medals", columns), *nearest] if nearest else []),
         ]
 
     def _own_progress(self) -> tuple[LevelProgress, ...]:
@@ -168,3 +165,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         except (leaderboard.LeaderboardError, ProgressError) as error:
             self.app.push_screen(MessageDialog("Leaderboard", str(error)))
         self._read()
+
+
+def _rows_of(table: Table, columns: int) -> list[Row]:
+    return [each for rows in table_rows(table, columns).entries for each in rows]

@@ -23,7 +23,7 @@ from kit.tui.rows.progress_rows import (
     export_rows,
     lesson_counts,
     lesson_rows,
-    reach_rows,
+    reach_table,
     section,
     section_of,
     short_lesson_rows,
@@ -70,7 +70,7 @@ class ProgressScreen(SectionsScreen):
         is_alone = columns > self._width - LEAST_COLUMN
         parts = [section("the game", told.game, columns)]
         if told.in_reach:
-            parts.append(section("nearest medals", reach_rows(told.in_reach), columns))
+            parts.append(section_of("nearest medals", [reach_table(told.in_reach)], columns))
         if told.days:
             days = [row(f"  {told.streak.describe()}"), row(), *calendar_rows(told.days, told.today, columns)]
             parts.append(section("days", days, columns))
