@@ -328,7 +328,7 @@ def open_again(
         runner.paused = True
         session.stop_robot()
         session.drive_with(controller)
-    except BaseException:
+    except BaseException:  # Ctrl-C too: raised again
         session.close()
         raise
     return session, referee, recorder
