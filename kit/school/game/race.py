@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
+from random import Random, SystemRandom
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -29,7 +30,7 @@ from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, LevelConditions
 from kit.school.game.objective import Objective
-from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
+from kit.school.game.starts import OWN_SEED, draw_seeds, scenario_from
 from kit.sim.simulation import STEP_SIZE_S, Simulation
 
 if TYPE_CHECKING:
@@ -231,11 +232,14 @@ def race_from_all_starts(
     *,
     first: tuple[RaceFinish, Recording] | None = None,
     on_second: Callable[[int, float], None] = lambda start, seconds: None,
+    random: Random | None = None,
 ) -> list[tuple[RaceFinish, Recording]]:
-    """Lets a controller drive the level from each of its starts. ``first``: the drive from the level's own start, where it
-    was watched. ``on_second``: gets the number of the start, from 1, and the seconds driven; what it raises ends the race."""
+    """Lets a controller drive the level from its own start and from drawn ones. ``first``: the drive from the level's own
+    start, where it was watched. ``on_second``: gets the number of the start, from 1, and the seconds driven; what it raises
+    ends the race. ``random``: draws the starts; by default nobody can tell which."""
     drives = [] if first is None else [first]
-    for number, seed in enumerate(seeds_of(level)[len(drives) :], len(drives) + 1):
+    seeds = draw_seeds(level, random or SystemRandom())
+    for number, seed in enumerate(seeds[len(drives) :], len(drives) + 1):
         drives.append(race_controller(level, controller, on_second=partial(on_second, number), seed=seed))
     return drives
 

@@ -36,7 +36,7 @@ from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import BY_HAND, ExtraRule, kept_rules
 from kit.school.game.race import ALLOWED_SERVICES, DriverKind, RaceFinish, middle_drive, run_again
 from kit.school.game.references import reference_recording, reference_seconds
-from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
+from kit.school.game.starts import OWN_SEED, STARTS, are_drawn, scenario_from
 from kit.sim.simulation import STEP_SIZE_S, Simulation
 from kit.workspace import write_atomically
 from kit.world.records import World
@@ -70,7 +70,8 @@ class JudgedDrive:
     tracks: tuple[FloatArray, ...]
     """The poses of each driven robot (k, 3) [m, m, rad], ``step_size`` [s] apart."""
     way: tuple[FloatArray, ...]
-    """Where each was (k, 2) [m], from when the first of them had set off: the same for a copy that waits first."""
+    """Where each was (k, 2) [m] in the drive from the level's own start, from when the first of them had set off: the same for
+    a copy that waits first, and for a copied program, whose other starts are other ones."""
     step_size: float
     is_same_platform: bool
     """Whether it was driven on this platform, and so is the same to the bit."""
@@ -135,14 +136,14 @@ def _holds(file: Path, content: bytes) -> bool:
 def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive:
     """Runs the drives of a file of ``share_drives`` again and judges them. Raises DriveRefused."""
     shared = read_shared_drives(data)
-    drives = drives_again(shared, level, (OWN_SEED,) if driver is DriverKind.KEYS else seeds_of(level))
+    drives = drives_again(shared, level, driver)
     counts = middle_drive([finish for finish, _ in drives])
     finish, again = drives[counts]
     if not finish.reached:
         raise DriveRefused("it does not reach the goal")
     robots = scenario_from(level, again.seed).partners
     tracks = tuple(again.track(name)[::TRACK_STRIDE] for name in robots)
-    way = _way_of(level, again)
+    way = _way_of(level, next(each for _, each in drives if each.seed == OWN_SEED))
     if driver is DriverKind.KEYS and _is_reference(level, way):
         raise DriveRefused("it is the reference drive")
     return JudgedDrive(
@@ -157,11 +158,15 @@ def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> Ju
 
 
 def drives_again(
-    shared: SharedDrives, level: GameLevel, seeds: Sequence[int]
+    shared: SharedDrives, level: GameLevel, driver: DriverKind
 ) -> list[tuple[RaceFinish, Recording]]:
-    """Runs the drives of a level again: one from each of these starts. Raises DriveRefused."""
-    if tuple(sorted(each.seed for each in shared.recordings)) != tuple(seeds):
-        raise DriveRefused(f"it has not one drive from each of the {len(seeds)} starts")
+    """Runs the drives of a level again: one of a hand, from the level's own start, of others one from each start. Raises
+    DriveRefused."""
+    seeds = sorted(each.seed for each in shared.recordings)
+    if driver is DriverKind.KEYS and seeds != [OWN_SEED]:
+        raise DriveRefused("it is not one drive from the level's own start")
+    if driver is not DriverKind.KEYS and not are_drawn(level, seeds):
+        raise DriveRefused(f"it has not one drive from each of {STARTS} starts")
     drives = []
     for number, recording in enumerate(shared.recordings):
         try:

@@ -1,13 +1,17 @@
 """The starts of a race: the level's own for a hand, five for a program or an agent, of which the middle drive counts.
 
 A list of commands that is right for one start is wrong for another: the drawn starts shift the robots by centimetres and
-degrees, add noise to their lasers and move the traffic on. Which start a drive had is told by its seed.
+degrees, add noise to their lasers and move the traffic on. They are drawn anew for each race, so no commands can be prepared
+for them. Two and two lie on opposite sides of the level's own start (antithetic variates; Hammersley and Morton 1956): what one
+gains the other loses, and the middle drive does not depend on luck. Which start a drive had is told by its seed.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from random import Random
 from typing import Final
 
 import numpy as np
@@ -22,15 +26,19 @@ from kit.world.records import Model
 
 OWN_SEED: Final = 1
 """Seed of a drive from the level's own start."""
-SEEDS: Final = tuple(range(OWN_SEED, OWN_SEED + 5))
-"""Seeds of the drives of a program or an agent, the level's own start first."""
+STARTS: Final = 5
+"""Drives of a program or an agent on a level with medals: one from the level's own start, two from each of two pairs."""
+MAX_PAIR: Final = 10**9
+"""The pair of starts of number n has the seeds 2 n and 2 n + 1, for n from 1."""
 SHIFT_M, SHIFT_RAD = (0.015, 0.04), (0.15, 0.35)
 """How far a drawn start lies from the level's own along each axis, at least and at most [m], and by how much it is turned
 [rad]: little for who looks where the robot is, too much for a list of commands."""
 LASER_NOISE_M: Final = 0.01
 """Standard deviation of a laser's noise at a drawn start [m]."""
+OTHER_PHASE: Final = 0.5
+"""How much farther the carts are at the second start of a pair, in ways from one end to the other."""
 MAX_DRAWS: Final = 20
-"""So often a start is drawn before the level's own is taken: a robot must not stand in a wall."""
+"""So often a pair of starts is drawn before the level's own start is taken: a robot must not stand in a wall."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,30 +53,53 @@ class LaterCurve:
         return self.progress(turns + self.turns)
 
 
-def seeds_of(level: GameLevel) -> tuple[int, ...]:
-    """The seeds of a program's drives on a level: only the own start where there are no medals."""
-    return SEEDS if level.has_medals else SEEDS[:1]
+def draw_seeds(level: GameLevel, random: Random) -> tuple[int, ...]:
+    """Draws the seeds of a program's drives on a level, in rising order; only the own start where there are no medals."""
+    if not level.has_medals:
+        return (OWN_SEED,)
+    pairs = sorted(random.sample(range(1, MAX_PAIR + 1), STARTS // 2))
+    return (OWN_SEED, *(2 * pair + side for pair in pairs for side in (0, 1)))
+
+
+def are_drawn(level: GameLevel, seeds: Sequence[int]) -> bool:
+    """Whether ``draw_seeds`` can have drawn these seeds for a level."""
+    if not level.has_medals:
+        return tuple(seeds) == (OWN_SEED,)
+    firsts = seeds[1::2]
+    pairs = [seed for first in firsts for seed in (first, first + 1)]
+    are_even = all(first % 2 == 0 for first in firsts)
+    return len(set(seeds)) == STARTS and are_even and list(seeds) == [OWN_SEED, *pairs]
 
 
 def scenario_from(level: GameLevel, seed: int) -> Scenario:
     """A level's scenario with the start of a drive. Raises as ``GameLevel.find_scenario``, and ValueError for a seed that
     no drive of the game has."""
-    if seed not in SEEDS:
-        raise ValueError(f"a drive of the game has a seed from {SEEDS[0]} to {SEEDS[-1]}, not {seed}")
+    if not OWN_SEED <= seed <= 2 * MAX_PAIR + 1:
+        raise ValueError(f"a drive of the game has a seed from {OWN_SEED} to {2 * MAX_PAIR + 1}, not {seed}")
     scenario = level.find_scenario()
     if seed == OWN_SEED:
         return scenario
-    random = np.random.default_rng([seed, *level.reference_id.encode()])
+    pair, side = divmod(seed, 2)
+    random = np.random.default_rng([pair, *level.reference_id.encode()])
     for _ in range(MAX_DRAWS):
-        phase = float(random.uniform(0.0, 2.0))
-        least, most = np.transpose((SHIFT_M, SHIFT_M, SHIFT_RAD))
-        x, y, turn = random.uniform(least, most) * random.choice((-1.0, 1.0), 3)
-        models = [_disturb_model(model, phase) for model in scenario.world.models]
-        disturbed = replace(scenario, world=replace(scenario.world, models=tuple(models)))
-        shifted = _shift_scenario(disturbed, float(x), float(y), float(turn))
-        if _is_free(shifted):
-            return shifted
+        both = _draw_pair(scenario, random)
+        if all(map(_is_free, both)):
+            return both[side]
     return scenario
+
+
+def _draw_pair(scenario: Scenario, random: np.random.Generator) -> tuple[Scenario, Scenario]:
+    """Two scenarios whose starts lie on opposite sides of the scenario's own."""
+    phase = float(random.uniform(0.0, 2.0))
+    least, most = np.transpose((SHIFT_M, SHIFT_M, SHIFT_RAD))
+    x, y, turn = (random.uniform(least, most) * random.choice((-1.0, 1.0), 3)).tolist()
+    return _disturb(scenario, phase, x, y, turn), _disturb(scenario, phase + OTHER_PHASE, -x, -y, -turn)
+
+
+def _disturb(scenario: Scenario, phase: float, x: float, y: float, turn: float) -> Scenario:
+    """The scenario with noise on its lasers, its carts on their way since ``phase`` and its robots shifted."""
+    models = tuple(_disturb_model(model, phase) for model in scenario.world.models)
+    return _shift_scenario(replace(scenario, world=replace(scenario.world, models=models)), x, y, turn)
 
 
 def film_scenario(level: GameLevel, seed: int) -> Scenario:

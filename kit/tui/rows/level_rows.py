@@ -11,7 +11,7 @@ from kit.school.game.levels import GameLevel, GameWorld, all_levels
 from kit.school.game.medal import RUNGS, Medal, medal_time, rung_in_reach
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.school.game.starts import SEEDS
+from kit.school.game.starts import STARTS
 from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_words
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, NOT_MEANT, STAR
 
@@ -156,7 +156,7 @@ def not_for_agents(level: GameLevel) -> str:
 def other_start(number: int, seconds: float) -> Row:
     """What is said while a program drives from its other starts."""
     return row(
-        (f" From {len(SEEDS)} starts, of which the middle drive counts: ", "dim"),
+        (f" From {STARTS} starts, of which the middle drive counts: ", "dim"),
         f"start {number}, {seconds:.0f} s",
     )
 

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from random import Random
 from tempfile import TemporaryDirectory
 from typing import Final
 
@@ -33,7 +34,7 @@ from kit.school.game.race import (
     run_race,
 )
 from kit.school.game.references import CommandPlayer, find_drive, reference_seconds
-from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
+from kit.school.game.starts import OWN_SEED, draw_seeds, scenario_from
 from tests.school.game.level_agents import train_agent
 from tests.school.game.map_plans import write_program
 from tests.school.game.ordinary import OrdinaryDriver
@@ -101,7 +102,7 @@ def tape_drive(level: GameLevel, seed: int) -> Drive:
 
 def tape_drives(level: GameLevel) -> list[Drive]:
     """The reference's commands from all starts."""
-    return [tape_drive(level, seed) for seed in seeds_of(level)]
+    return [tape_drive(level, seed) for seed in draw_seeds(level, Random(level.id))]
 
 
 def judged(level: GameLevel, driver: DriverKind, drives: Sequence[Drive]) -> tuple[RaceFinish, Medal]:
@@ -124,7 +125,7 @@ def _measure(level: GameLevel, driver: str, is_second: bool = False) -> Measured
     with TemporaryDirectory() as folder, _driver(level, driver, Path(folder), is_second) as drive_from:
         if isinstance(drive_from, str):
             return MeasuredDrive(level.id, driver, False, 0.0, 0, drive_from)
-        seeds = seeds_of(level) if driver != "keys" else (OWN_SEED,)
+        seeds = draw_seeds(level, Random(level.id)) if driver != "keys" else (OWN_SEED,)
         shorter = replace(
             level, time_limit=min(level.time_limit, LONGEST * (reference_seconds(level) or 1e3))
         )

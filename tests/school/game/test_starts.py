@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import math
+from random import Random
 
 import pytest
 
 from kit.run.recording import rerun
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import RaceFinish, judge_recording, middle_drive
-from kit.school.game.starts import OWN_SEED, SEEDS, SHIFT_M, SHIFT_RAD, scenario_from, seeds_of
+from kit.school.game.starts import (
+    MAX_PAIR,
+    OWN_SEED,
+    SHIFT_M,
+    SHIFT_RAD,
+    STARTS,
+    are_drawn,
+    draw_seeds,
+    scenario_from,
+)
 from kit.sim.simulation import Simulation
 from tests.kit_content import kit_levels
 from tests.school.game.measured_drivers import drive
@@ -23,7 +33,7 @@ def test_starts_differ_by_little_and_are_free(level: GameLevel) -> None:
     own = level.find_scenario()
     assert scenario_from(level, OWN_SEED).starts == own.starts
     middles = set()
-    for seed in seeds_of(level)[1:]:
+    for seed in draw_seeds(level, Random(7))[1:]:
         scenario = scenario_from(level, seed)
         assert scenario.starts == scenario_from(level, seed).starts
         for before, after in zip(own.starts, scenario.starts, strict=True):
@@ -38,25 +48,56 @@ def test_starts_differ_by_little_and_are_free(level: GameLevel) -> None:
         simulation = Simulation(scenario.world, seed=seed, has_subscribers=lambda topic: False)
         simulation.step()
         assert not any(simulation.is_touching(name) for name in scenario.partners)
-    assert len(middles) == len(SEEDS) - 1, "every start is another"
+    assert len(middles) == STARTS - 1, "every start is another"
+
+
+def test_two_and_two_starts_lie_on_opposite_sides_of_the_own_one() -> None:
+    level = kit_levels()[0]
+    (own,) = level.find_scenario().starts
+    for pair in (1, 12, MAX_PAIR):
+        (one,), (other,) = (scenario_from(level, 2 * pair + side).starts for side in (0, 1))
+        middle = [(getattr(one, axis) + getattr(other, axis)) / 2 for axis in ("x", "y", "theta")]
+        assert middle == pytest.approx([own.x, own.y, own.theta])
+
+
+def test_starts_are_drawn_by_the_generator_alone() -> None:
+    level = kit_levels()[0]
+    assert draw_seeds(level, Random(1)) == draw_seeds(level, Random(1)) != draw_seeds(level, Random(2))
+
+
+@pytest.mark.parametrize(
+    ("seeds", "drawn"),
+    [
+        ((1, 4, 5, 8, 9), True),
+        ((1, 4, 5, 4, 5), False),
+        ((1, 4, 6, 8, 10), False),
+        ((1, 5, 6, 9, 10), False),
+        ((1, 4, 5), False),
+        ((2, 4, 5, 8, 9), False),
+        ((1,), False),
+        ((), False),
+    ],
+)
+def test_what_can_have_been_drawn(seeds: tuple[int, ...], drawn: bool) -> None:
+    assert are_drawn(kit_levels()[0], seeds) is drawn
 
 
 def test_traffic_is_elsewhere_at_every_start() -> None:
     level = next(each for each in kit_levels() if each.id == "crossing")
     places = set()
-    for seed in SEEDS:
+    for seed in draw_seeds(level, Random(7)):
         simulation = Simulation(
             scenario_from(level, seed).world, seed=seed, has_subscribers=lambda topic: False
         )
         simulation.step()
         places.add(round(simulation.pose("lorry").x, 3))
-    assert len(places) == len(SEEDS)
+    assert len(places) == STARTS
 
 
 def test_a_drive_from_another_start_runs_again_to_the_bit() -> None:
     level = next(each for each in kit_levels() if each.id == "crossing")
-    finish, recording = drive(level, SEEDS[2], lambda session: None)
-    assert recording.seed == SEEDS[2]
+    finish, recording = drive(level, 12, lambda session: None)
+    assert recording.seed == 12
     again = rerun(recording, scenario_from(level, recording.seed).world)
     assert again.poses.tobytes() == recording.poses.tobytes()
     assert judge_recording(level, recording).seconds == pytest.approx(finish.seconds)
@@ -65,7 +106,7 @@ def test_a_drive_from_another_start_runs_again_to_the_bit() -> None:
 def test_a_seed_of_no_start_is_refused() -> None:
     level = kit_levels()[0]
     with pytest.raises(ValueError, match="seed"):
-        scenario_from(level, SEEDS[-1] + 1)
+        scenario_from(level, 2 * MAX_PAIR + 2)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from itertools import permutations
 from pathlib import Path
+from random import Random
 from typing import Any, ClassVar, Final
 
 from kit import __version__
@@ -35,7 +36,7 @@ from kit.school.game.league.entries import FOLDER as ENTRIES
 from kit.school.game.league.entries import MANIFEST, Entry, LeagueError, read_entries, record_holders
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
 from kit.school.game.levels import GameLevel, UnknownLevel, find_level
-from kit.school.game.race import RaceFinish, race_controller
+from kit.school.game.race import DriverKind, RaceFinish, race_controller
 from kit.school.game.shared_drives import (
     MAX_FILE_BYTES,
     DriveRefused,
@@ -45,7 +46,7 @@ from kit.school.game.shared_drives import (
     read_shared_drives,
     share_drives,
 )
-from kit.school.game.starts import scenario_from, seeds_of
+from kit.school.game.starts import draw_seeds, scenario_from
 from kit.school.game.two_players import TAG_SECONDS, CannotShare, SharedPhase
 from kit.sim.simulation import Simulation
 from kit.workspace import Workspace, make_private_folder, open_common_folder, write_atomically
@@ -326,7 +327,7 @@ def run_league_job(job: LeagueJob, confinement: Confinement) -> tuple[list[Recor
             game = play_tag(job.level, programs, confinement, GRADER_LIMITS)
             return [game.recording], list(game.failures)
         drives: list[tuple[RaceFinish, Recording]] = []
-        for seed in seeds_of(job.level):
+        for seed in draw_seeds(job.level, Random(job.key)):
             if drives and drives[0][0].failure is not None and not drives[0][1].ticks:
                 drives.append(
                     (drives[0][0], _undriven(job.level, seed))
@@ -428,7 +429,7 @@ def _rerun(content: bytes, level: GameLevel, players: int) -> tuple[JudgedJob, t
     """Runs what a result holds again, and judges it. Raises DriveRefused, RecordingError and ValueError."""
     shared = read_shared_drives(content)
     if players == 1:
-        drives = drives_again(shared, level, seeds_of(level))
+        drives = drives_again(shared, level, DriverKind.CONTROLLER)
         finishes = tuple(finish for finish, _ in drives)
         judged = JudgedJob(finishes, remarks=shared.remarks, is_same_platform=shared.is_same_platform)
         return judged, tuple(recording for _, recording in drives)

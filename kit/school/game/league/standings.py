@@ -17,6 +17,7 @@ from kit.school.game.league.league import JudgedJob, League, LeagueJob, Programm
 from kit.school.game.league.ratings import Rating, rate
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import finish_order, middle_drive
+from kit.school.game.starts import OWN_SEED
 from kit.sim.simulation import STEP_SIZE_S
 
 DIVISION_SIZE: Final = 6
@@ -146,14 +147,10 @@ def _standings_of(
 
 
 def match_recordings(league: League, match: Match) -> tuple[Recording, ...]:
-    """The recordings of a match, run again: of a race the two drives from the start of the first one's that counts, of tag the
-    game. Raises LeagueError."""
-    if match.is_tag:
-        return league.recordings(match.jobs[0])
-    judged = league.judge(match.jobs[0])
-    drives = [league.recordings(job) for job in match.jobs]
-    first = drives[0][0 if judged is None else middle_drive(judged.finishes)]
-    return first, next(each for each in drives[1] if each.seed == first.seed)
+    """The recordings of a match, run again: of a race the two drives from the level's own start, the only one that both have,
+    of tag the game. Raises LeagueError."""
+    recordings = [each for job in match.jobs for each in league.recordings(job)]
+    return tuple(each for each in recordings if each.seed == OWN_SEED)
 
 
 def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, JudgedJob]) -> Match:
