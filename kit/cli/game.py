@@ -157,6 +157,11 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     target [x, y] and target_radius. On a level with several targets, target is the
     first, and targets [x1, y1, x2, y2, ...] lists all in order, lap by lap. Where a
     leader is followed, leader_frame is its frame on /tf.
+
+    On a level with medals it drives five times, and the middle drive counts: once from
+    the level's own start, and four times from starts that are drawn anew for each race,
+    some centimetres and degrees off, with a robot that veers, laser noise, and traffic
+    that is elsewhere.
     """
     from kit.learning.policies.policy import PolicyError
     from kit.learning.training.run_config import RunError

@@ -323,6 +323,8 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
     for limits in (drive.linear, drive.angular):
         if limits.acceleration > 0.0 or limits.deceleration > 0.0:
             raise UnsupportedWorld(f"{plugin.location}: in training motors have no acceleration limits")
+    if drive.veer:
+        raise UnsupportedWorld(f"{plugin.location}: in training robots do not veer")
     sight = _laser(observer).mount.bits
     untouched = [each for each in body.footprints if each not in hull and each.category & sight]
     return BatchRobot(

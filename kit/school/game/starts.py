@@ -1,9 +1,9 @@
 """The starts of a race: the level's own for a hand, five for a program or an agent, of which the middle drive counts.
 
 A list of commands that is right for one start is wrong for another: the drawn starts shift the robots by centimetres and
-degrees, add noise to their lasers and move the traffic on. They are drawn anew for each race, so no commands can be prepared
-for them. Two and two lie on opposite sides of the level's own start (antithetic variates; Hammersley and Morton 1956): what one
-gains the other loses, and the middle drive does not depend on luck. Which start a drive had is told by its seed.
+degrees, let them veer, add noise to their lasers and move the traffic on. They are drawn anew for each race, so nobody can
+prepare for them. Two and two lie on opposite sides of the level's own start (antithetic variates; Hammersley and Morton 1956):
+what one gains the other loses, and the middle drive does not depend on luck. Which start a drive had is told by its seed.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ import numpy as np
 from kit.geometry import Pose
 from kit.run.scenario import Scenario
 from kit.school.game.levels import GameLevel
+from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.laser import LaserParams
+from kit.sim.plugins.tricycle_drive import TricycleDriveParams
 from kit.sim.plugins.tween import ProgressCurve, TweenParams
 from kit.sim.simulation import Simulation
 from kit.world.records import Model
@@ -33,6 +35,8 @@ MAX_PAIR: Final = 10**9
 SHIFT_M, SHIFT_RAD = (0.015, 0.04), (0.15, 0.35)
 """How far a drawn start lies from the level's own along each axis, at least and at most [m], and by how much it is turned
 [rad]: little for who looks where the robot is, too much for a list of commands."""
+VEER: Final = (0.1, 0.2)
+"""Curvature of a robot's way at a drawn start when it is told to go straight, at least and at most, to either side [1/m]."""
 LASER_NOISE_M: Final = 0.01
 """Standard deviation of a laser's noise at a drawn start [m]."""
 OTHER_PHASE: Final = 0.5
@@ -93,13 +97,16 @@ def _draw_pair(scenario: Scenario, random: np.random.Generator) -> tuple[Scenari
     phase = float(random.uniform(0.0, 2.0))
     least, most = np.transpose((SHIFT_M, SHIFT_M, SHIFT_RAD))
     x, y, turn = (random.uniform(least, most) * random.choice((-1.0, 1.0), 3)).tolist()
-    return _disturb(scenario, phase, x, y, turn), _disturb(scenario, phase + OTHER_PHASE, -x, -y, -turn)
+    veer = float(random.uniform(*VEER) * random.choice((-1.0, 1.0)))
+    one = _disturb(scenario, phase, veer)
+    other = _disturb(scenario, phase + OTHER_PHASE, -veer)
+    return _shift_scenario(one, x, y, turn), _shift_scenario(other, -x, -y, -turn)
 
 
-def _disturb(scenario: Scenario, phase: float, x: float, y: float, turn: float) -> Scenario:
-    """The scenario with noise on its lasers, its carts on their way since ``phase`` and its robots shifted."""
-    models = tuple(_disturb_model(model, phase) for model in scenario.world.models)
-    return _shift_scenario(replace(scenario, world=replace(scenario.world, models=models)), x, y, turn)
+def _disturb(scenario: Scenario, phase: float, veer: float) -> Scenario:
+    """The scenario with noise on its lasers, its carts on their way since ``phase`` and robots that do not go straight."""
+    models = tuple(_disturb_model(model, phase, veer) for model in scenario.world.models)
+    return replace(scenario, world=replace(scenario.world, models=models))
 
 
 def film_scenario(level: GameLevel, seed: int) -> Scenario:
@@ -109,13 +116,16 @@ def film_scenario(level: GameLevel, seed: int) -> Scenario:
     return replace(scenario, case=case)
 
 
-def _disturb_model(model: Model, phase: float) -> Model:
-    """A model with noise on its lasers, and on its way since a while if it is a cart. ``phase``: as of ``LaterCurve``."""
+def _disturb_model(model: Model, phase: float, veer: float) -> Model:
+    """A model with noise on its lasers and a drive that veers [1/m], or on its way since a while if it is a cart. ``phase``: as
+    of ``LaterCurve``."""
     plugins = []
     for plugin in model.plugins:
         params = plugin.params
         if isinstance(params, LaserParams):
             params = replace(params, noise=math.hypot(params.noise, LASER_NOISE_M))
+        elif isinstance(params, DiffDriveParams | TricycleDriveParams):
+            params = replace(params, veer=params.veer + veer)
         elif isinstance(params, TweenParams) and params.progress is not None:
             params = replace(params, progress=LaterCurve(params.progress, phase))
         plugins.append(replace(plugin, params=params))

@@ -22,6 +22,8 @@ class DiffDriveParams:
     topic: str
     linear: SpeedLimits
     angular: SpeedLimits
+    veer: float
+    """Curvature of the way when told to go straight [1/m]."""
     odometry: OdometryParams
 
     def build(self, context: PluginContext) -> DiffDrive:
@@ -34,6 +36,7 @@ def read_params(section: Section, scope: ModelScope) -> DiffDriveParams:
         topic=read_topic(section, "twist_sub", "cmd_vel"),
         linear=read_speed_limits(section, "linear_dynamics"),
         angular=read_speed_limits(section, "angular_dynamics"),
+        veer=section.number("veer", 0.0),
         odometry=read_odometry_params(section),
     )
 
@@ -50,6 +53,8 @@ class DiffDrive(Plugin):
     twist_sub                           topic of the commands
     linear_dynamics                     limits of the forward speed; without it none
     angular_dynamics                    limits of the turn; without it none
+    veer                                curvature of the way when told to go straight, to the left [1/m], as with
+                                        wheels of unequal size; by default 0
     linear_dynamics.acceleration_limit  limit of gaining speed [m/s^2]; 0: none
     linear_dynamics.deceleration_limit  limit of losing speed [m/s^2]; by default that of gaining it; 0: none
     linear_dynamics.velocity_limit      limit of the speed [m/s]; 0: none
@@ -86,6 +91,7 @@ class DiffDrive(Plugin):
             forward = self._params.linear.limited_speed(self._velocity[0], forward, dt)
             turn = self._params.angular.limited_speed(self._velocity[1], turn, dt)
             self._velocity = forward, turn
+        turn += self._params.veer * forward
         sent = self._odometry.step((forward, 0.0, turn), dt)
         self._body.drive(forward, 0.0, turn)
         return sent

@@ -39,6 +39,8 @@ class TricycleDriveParams:
     """[rad], 0 for no limit."""
     linear: SpeedLimits
     steering: SpeedLimits
+    veer: float
+    """Curvature of the way when told to go straight [1/m]."""
     odometry: OdometryParams
 
     def build(self, context: PluginContext) -> TricycleDrive:
@@ -64,6 +66,7 @@ def read_params(section: Section, scope: ModelScope) -> TricycleDriveParams:
         max_steering=section.number("max_steer_angle", 0.0, minimum=0),
         linear=read_speed_limits(section, "linear_dynamics"),
         steering=_read_steering_limits(section),
+        veer=section.number("veer", 0.0),
         odometry=replace(read_odometry_params(section), wheel_separation=separation),
     )
 
@@ -136,6 +139,8 @@ class TricycleDrive(Plugin):
     ackermann_sub                       topic of ackermann_msgs/AckermannDriveStamped, as cars take it:
                                         ``drive.speed`` is the rear axle's speed, ``drive.steering_angle`` the angle
     max_steer_angle                     largest steering angle [rad]; 0: no limit
+    veer                                curvature of the rear axle's way when told to go straight, to the left [1/m]; by
+                                        default 0
     linear_dynamics                     limits of the speed; without it none
     angular_dynamics                    limits of the rate at which the steering angle changes, and of its change;
                                         without it none
@@ -197,11 +202,18 @@ class TricycleDrive(Plugin):
             steering = clamp(steering, params.max_steering)
         rim_speed = self._speed / math.cos(self._steering) if self._is_rear_speed else self._speed
         forward, turn = motors.tricycle_twist(rim_speed, self._steering, params.wheelbase)
+        veering = params.veer * forward
+        turn += veering
         self._steering_rate = (steering - self._steering) / dt
         lateral = turn * params.wheelbase  # of the body's origin, which lies before the rear axle
         sent = self._odometry.step((forward, lateral, turn), dt)
         self._body.drive(forward, lateral, turn)
-        self._front_wheel.drive(rim_speed, 0.0, turn + self._steering_rate)
+        slip = veering * params.wheelbase  # of the front wheel, across the body
+        self._front_wheel.drive(
+            rim_speed + slip * math.sin(self._steering),
+            slip * math.cos(self._steering),
+            turn + self._steering_rate,
+        )
         self._steering = steering
         return sent
 

@@ -125,6 +125,7 @@ def test_parts_that_the_lidar_sees_hide_what_is_behind_them(workshop: Workshop) 
             {"robot": robot(plugins=[DRIVE | {"linear_dynamics": {"acceleration_limit": 1}}, LASER])},
             "no acceleration limits",
         ),
+        ({"robot": robot(plugins=[DRIVE | {"veer": 0.1}, LASER])}, "do not veer"),
         ({"robot": robot(), "cart": {"bodies": [body("cart")]}}, "in training only robots can be pushed"),
         (
             {"robot": robot(), "cart": {"bodies": [body("cart", type="kinematic")], "plugins": [TRIGGERED]}},

@@ -4,7 +4,8 @@
     python -m tests.school.game.measured_drivers --measure    # drives what is missing in it, a line as soon as it is known
 
 ``keys`` presses the keys of a hand with ordinary skill, ``laser`` is a tidy program without a map, ``map`` one that follows
-points read off the map, ``agent`` is trained for the level by the kit's preset, and ``tape`` plays the commands of the reference drive back. The drives stand in
+points read off the map, ``agent`` is trained for the level by the kit's preset, and ``tape`` turns to the level's own heading and
+plays the commands of the reference drive back. The drives stand in
 ``measured_drivers.csv``; the medals are not in it, but derived from the bars as they are now.
 """
 
@@ -12,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -23,7 +25,8 @@ from typing import Final
 from kit.controllers import find_controller
 from kit.run.recording import Recording
 from kit.run.session import Session
-from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.drive_commands import DriveCommand
+from kit.school.game.levels import TURN_RATE, GameLevel, all_levels
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.race import (
     DriverKind,
@@ -35,6 +38,7 @@ from kit.school.game.race import (
 )
 from kit.school.game.references import CommandPlayer, find_drive, reference_seconds
 from kit.school.game.starts import OWN_SEED, draw_seeds, scenario_from
+from kit.sim.simulation import STEP_SIZE_S
 from tests.school.game.level_agents import train_agent
 from tests.school.game.map_plans import write_program
 from tests.school.game.ordinary import OrdinaryDriver
@@ -92,16 +96,23 @@ def keys_drive(level: GameLevel, seed: int = OWN_SEED) -> Drive:
 
 
 def tape_drive(level: GameLevel, seed: int) -> Drive:
-    """The reference's commands from one start."""
+    """The reference's commands from one start; a single robot turns to the level's own heading first, as a program can that
+    is told where it stands."""
     reference = find_drive(level)
     assert reference is not None
+    own, *others = level.find_scenario().starts
+    excess = 0.0 if others else scenario_from(level, seed).starts[0].theta - own.theta
+    ticks = math.ceil(abs(excess) / TURN_RATE / STEP_SIZE_S)
+    if ticks:
+        turn = DriveCommand(ticks, 0.0, -excess / (ticks * STEP_SIZE_S))
+        reference = replace(reference, commands=(turn, *reference.commands))
     return drive(
         level, seed, lambda session: session.runner.participants.append(CommandPlayer(session, reference))
     )
 
 
 def tape_drives(level: GameLevel) -> list[Drive]:
-    """The reference's commands from all starts."""
+    """The tape's drives from all starts."""
     return [tape_drive(level, seed) for seed in draw_seeds(level, Random(level.id))]
 
 

@@ -56,6 +56,18 @@ class TestDiffDrive:
         simulation.step(100)
         assert simulation.pose("robot") == pytest.approx((1, 0, 0), abs=1e-9)
 
+    def test_one_that_veers_drives_a_circle_forth_and_back(self, workshop: Workshop) -> None:
+        simulation = robot(workshop, veer=0.5)
+        simulation.accept("/cmd_vel", command(0.5))
+        simulation.step(200)
+        angle = 0.5 * 1.0
+        assert simulation.pose("robot") == pytest.approx(
+            (2 * math.sin(angle), 2 * (1 - math.cos(angle)), angle), abs=1e-3
+        )
+        simulation.accept("/cmd_vel", command(-0.5))
+        simulation.step(200)
+        assert simulation.pose("robot") == pytest.approx((0, 0, 0), abs=1e-3)
+
     @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
     def test_a_command_that_is_no_number_stops_it(self, workshop: Workshop, bad: float) -> None:
         simulation = robot(workshop)
@@ -232,6 +244,14 @@ class TestTricycleDrive:
         message = reports(simulation, 100, "/odometry/ground_truth")[-1]
         assert twist_of(message)[0] == 0
         assert simulation.pose("robot").x == pytest.approx(12.5, abs=1e-6)
+
+    def test_the_rear_axle_of_one_that_veers_drives_a_circle(self, workshop: Workshop) -> None:
+        simulation = tricycle(workshop, veer=0.5)
+        simulation.accept("/cmd_vel", command(0.5))
+        simulation.step(200)
+        x, y, theta = simulation.pose("robot")
+        axle = x - 0.9 * math.cos(theta), y - 0.9 * math.sin(theta), theta
+        assert axle == pytest.approx((12 - 0.9 + 2 * math.sin(0.5), 2 * (1 - math.cos(0.5)), 0.5), abs=1e-2)
 
     def test_speed_limit(self, workshop: Workshop) -> None:
         simulation = tricycle(workshop, linear_dynamics={"velocity_limit": 0.2})
