@@ -19,7 +19,13 @@ import pytest
 from kit.arrays import Float32Array, FloatArray
 from kit.geometry import Pose
 from kit.kernels import kernels, world_kernels
-from kit.learning.maps.batch_map import BatchMap, UnsupportedWorld, batch_geometry, batch_map_of_world
+from kit.learning.maps.batch_map import (
+    BatchMap,
+    UnsupportedWorld,
+    axle_twists,
+    batch_geometry,
+    batch_map_of_world,
+)
 from kit.learning.maps.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams
@@ -34,6 +40,9 @@ FASTEST = 0.5, 0.6
 BLOCKED_WITHIN = 2 * TICK * (FASTEST[0] + FASTEST[1] * 0.13) + 0.001
 """Where the two engines leave a robot that meets something, they differ by no more [m]: two ticks' way, and the depth
 to which things in contact may overlap."""
+
+TRICYCLES = "depot"
+"""The map whose robot has joints, which give way by some thousandths of a millimetre, and is represented all the same."""
 
 every_map = pytest.mark.parametrize("name", CARDS)
 
@@ -127,9 +136,8 @@ class Batch:
         hit = np.zeros(self._free.shape, dtype=np.bool_)
         here = np.zeros(1, dtype=np.int64)
         before = self.poses.copy()
-        world_kernels.step_worlds(
-            self._fleet, here, twists[None], np.array([TICK]), self.poses, self._free, hit
-        )
+        driven = axle_twists(twists[None], self._fleet.axle)
+        world_kernels.step_worlds(self._fleet, here, driven, np.array([TICK]), self.poses, self._free, hit)
         self._ticks += 1
         corners = np.empty((len(self._obstacles.corners), 2))
         world_kernels.stop_at_obstacles(
@@ -185,7 +193,7 @@ def test_the_batch_engine_represents_a_map_or_names_what_it_cannot(name: str) ->
         for model in world.models
         for body in model.bodies
     ) and not any(model.joints for model in world.models)
-    if plain:
+    if plain or name == TRICYCLES:
         assert batch_map_of_world(world, name, (card.robot, card.partner)).name == name
     else:
         with pytest.raises(UnsupportedWorld, match=r"\.yaml:\d+:\d+: .*training "):
@@ -198,6 +206,9 @@ def test_free_driving_is_equal_and_collisions_come_together(name: str) -> None:
     engines = both(name)
     for poses, twists in drives(name, 6):
         simulation, batch = engines.simulation(poses, looking=False), Batch(engines, poses)
+        if name == TRICYCLES:  # which are steered a tick before they turn
+            engines.command(simulation, twists * (0.0, 1.0))
+            simulation.step()
         engines.command(simulation, twists)
         for _ in range(400):
             simulation.step()
@@ -205,7 +216,7 @@ def test_free_driving_is_equal_and_collisions_come_together(name: str) -> None:
             if any(hit):
                 break
             assert not any(simulation.is_touching(robot) for robot in engines.robots)
-            assert differences(simulation, engines, batch).max() < 1e-9
+            assert differences(simulation, engines, batch).max() < (1e-5 if name == TRICYCLES else 1e-9)
         else:
             continue
         touching = [simulation.is_touching(robot) for robot in engines.robots]

@@ -170,6 +170,8 @@ class BatchGeometry(NamedTuple):
     """(corners): the robot that each corner belongs to."""
     hull_radius: float
     """No hull reaches farther from its robot's origin [m]."""
+    axle: float
+    """How far a robot's origin lies before the axle that it turns about [m]."""
     beams: Beams
     max_range: float
     """The lidars' [m]."""

@@ -272,9 +272,11 @@ def step_worlds_with(
         for k in range(poses.shape[1]):
             x, y, theta, forward = poses[i, k, 0], poses[i, k, 1], poses[i, k, 2], twists[i, k, 0]
             before[k, 0], before[k, 1], before[k, 2] = x, y, theta
-            x, y, theta = twist_step(x, y, theta, forward, 0.0, twists[i, k, 1], dt)
+            turn = twists[i, k, 1]
+            lateral = turn * geometry.axle
+            x, y, theta = twist_step(x, y, theta, forward, lateral, turn, dt)
             poses[i, k, 0], poses[i, k, 1], poses[i, k, 2] = x, y, theta
-            clearance[i, k] -= abs(forward) * dt
+            clearance[i, k] -= (abs(forward) + abs(lateral)) * dt
             may_collide |= clearance[i, k] <= geometry.hull_radius
             for j in range(k):
                 away = math.hypot(x - poses[i, j, 0], y - poses[i, j, 1])

@@ -8,13 +8,12 @@ from pathlib import Path
 
 from kit.geometry import Pose
 from kit.learning.maps.batch_floor import hull_radius, hull_width, measure_floor
-from kit.learning.maps.batch_map import BatchMap, load_batch_map
+from kit.learning.maps.batch_map import DRIVES, BatchMap, load_batch_map
 from kit.learning.tasks.catalogue import task_names, tasks_folder
 from kit.learning.tasks.goals.registry import goal_kinds
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.learning.tasks.task_reader import TASK_FILE
 from kit.plain_text import quoted
-from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.simulation import load_world
 from kit.world.catalogue import (
     WORLD_FILE,
@@ -27,14 +26,24 @@ from kit.world.catalogue import (
 )
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
-STANDARD = """\
-actions:
+TWO_WHEELS = """\
   twists:                     # m/s forward, rad/s to the left; or linear: [0, 0.4] and angular: [-1.5, 1.5]
     forward: [{fast:g}, 0]
     left: [0, {turn:g}]
     right: [0, -{turn:g}]
     forward_left: [{slow:g}, {turn:g}]
     forward_right: [{slow:g}, -{turn:g}]
+"""
+TRICYCLE = """\
+  twists:                     # m/s of the front wheel, its angle in rad to the left; or linear and angular: [least, greatest]
+    forward: [{fast:g}, 0]
+    forward_left: [{fast:g}, {turn:g}]
+    forward_right: [{fast:g}, -{turn:g}]
+    back: [-{fast:g}, 0]
+    back_left: [-{fast:g}, {turn:g}]
+    back_right: [-{fast:g}, -{turn:g}]
+"""
+STANDARD = """\
 observation:
   sectors: 13                 # the shortest range of each
   target: true                # distance and direction of the target
@@ -102,12 +111,14 @@ def _map_text(card: MapCard) -> str:
 def _standard_text(batch_map: BatchMap) -> str:
     """What every new task begins with, with actions that the robot's motors can do."""
     robot = batch_map.robot
-    return STANDARD.format(
-        goal=REACH_TARGET.kind,
-        other_goals=", ".join(kind for kind in goal_kinds() if kind != REACH_TARGET.kind),
+    twists = (TRICYCLE if robot.wheelbase else TWO_WHEELS).format(
         fast=min(0.4, robot.max_speed),
         slow=min(0.3, robot.max_speed),
-        turn=min(1.2, robot.max_turn_rate),
+        turn=min(0.9 if robot.wheelbase else 1.2, robot.max_turn_rate),
+    )
+    return f"actions:\n{twists}" + STANDARD.format(
+        goal=REACH_TARGET.kind,
+        other_goals=", ".join(kind for kind in goal_kinds() if kind != REACH_TARGET.kind),
         radius=0.2 if len(batch_map.starts) == 1 else 0.4,
     )
 
@@ -128,10 +139,12 @@ def _world_text(world_file: Path) -> str:
     robots = [
         model.name
         for model in world.models
-        if any(isinstance(plugin.params, DiffDriveParams) for plugin in model.plugins)
+        if any(isinstance(plugin.params, DRIVES) for plugin in model.plugins)
     ]
     if not robots:
-        raise NewTaskError(f"{world_file}: no model in it has a DiffDrive, so there is nothing to train.")
+        raise NewTaskError(
+            f"{world_file}: no model in it has a DiffDrive or a TricycleDrive, so there is nothing to train."
+        )
     folder = world_file.parent
     card = MapCard(
         folder.name,

@@ -16,7 +16,7 @@ from kit.learning.environment.batch_loops import BatchLoops
 from kit.learning.environment.batch_state import BatchState, BatchStep
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.disturbance_state import DisturbanceState
-from kit.learning.maps.batch_map import BatchMap
+from kit.learning.maps.batch_map import BatchMap, axle_twists
 from kit.learning.tasks.actions import DiscreteActions, TwistTable
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.reward import Reward, RewardFunction, check_reward
@@ -237,7 +237,7 @@ class BatchEnv:
         """Moves every world, scans, and counts what it has achieved."""
         before, commands = self._state, self._actions.commands(actions, self.task.robots)
         twists = np.ascontiguousarray(commands.twists)
-        disturbed, moves = self._drive(twists)
+        disturbed, moves = self._drive(axle_twists(twists, self._case_arrays.robot.wheelbase))
         bodies, step = self._bodies_at_checks(), before.step + 1
         target = self._follow_leaders(before.target, bodies[-1])
         draws = self._scan_draws(ALL_WORLDS, self.n, before.episode, step, disturbed)
@@ -280,7 +280,7 @@ class BatchEnv:
             )
         number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step * task.robots
         disturbed = old.disturbed.after_command(twists, self._random_keys, number)
-        return disturbed, disturbed.moves(task.collision_checks)
+        return disturbed.moves(task.collision_checks)
 
     def _measure_speeds(self, before: FloatArray, after: FloatArray) -> FloatArray:
         """(n, robots, 2) of this step, where agents are told; else what it was."""

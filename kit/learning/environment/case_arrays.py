@@ -207,7 +207,10 @@ def _check_robots(task: LearningTask, batch_map: BatchMap) -> None:
             f"rays from {low:.0f} to {high:.0f} degrees"
         )
     robot, (speed, turn_rate) = batch_map.robot, task.actions.largest
-    for fastest, limit, unit in ((speed, robot.max_speed, "m/s"), (turn_rate, robot.max_turn_rate, "rad/s")):
+    if robot.wheelbase and task.disturbances.inertia.high > 0.0:
+        raise UnsupportedWorld(f"{batch_map.name}: training has no inertia of a tricycle's motors")
+    turns = (turn_rate, robot.max_turn_rate, "rad" if robot.wheelbase else "rad/s")
+    for fastest, limit, unit in ((speed, robot.max_speed, "m/s"), turns):
         if fastest > limit:
             raise UnsupportedWorld(
                 f"{batch_map.name}: its motors do at most {limit:g} {unit}, and task {task.name} has an action of "

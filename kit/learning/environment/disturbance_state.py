@@ -1,9 +1,9 @@
-"""What differs from the robots' files in each of many worlds: noise, late commands, wheels."""
+"""What differs from the robots' files in each of many worlds: noise, late commands, slow motors, wheels."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,9 @@ import numpy as np
 from kit.arrays import FloatArray, IntArray
 from kit.kernels import world_kernels
 from kit.kernels.arrays import StepMoves
+from kit.learning.tasks.disturbances import TURN_SHARE
 from kit.learning.tasks.learning_task import LearningTask
+from kit.sim.simulation import STEP_SIZE_S
 
 SHARED_KINDS = ("lidar_noise", "dropped_rays", "latency", "command_jitter")
 """Drawn once for all robots of a world."""
@@ -32,6 +34,10 @@ class DisturbanceState:
     """(n, depth, r, 2): twists at the wheels, the newest first. All that are older than the last one are in the past."""
     due: FloatArray
     """(n, depth, r): in how many seconds each takes effect; at most 0 where it has already."""
+    inertia: FloatArray
+    """(n,) s per m/s; of all robots of a world."""
+    driven: FloatArray
+    """(n, r, 2): forward [m/s] and turn [rad/s] of the motors at the end of the last step; 0 without inertia."""
     is_any: bool
     """Whether the task has disturbances; asked of it in every step, that would cost as much as a kernel."""
 
@@ -45,6 +51,8 @@ class DisturbanceState:
             wheels=np.zeros((n, task.robots, len(WHEEL_KINDS))),
             commands=np.zeros((n, depth, task.robots, 2)),
             due=np.zeros((n, depth, task.robots)),
+            inertia=np.zeros(n),
+            driven=np.zeros((n, task.robots, 2)),
             is_any=bool(task.disturbances),
         )
 
@@ -58,6 +66,8 @@ class DisturbanceState:
             wheels=self.wheels.copy(),
             commands=self.commands.copy(),
             due=self.due.copy(),
+            inertia=self.inertia.copy(),
+            driven=self.driven.copy(),
         )
 
     def begin(self, which: IntArray, keys: IntArray, first: IntArray) -> None:
@@ -68,13 +78,15 @@ class DisturbanceState:
         if not self.is_any:
             return
         disturbances, robots, shared = self.task.disturbances, self.task.robots, len(SHARED_KINDS)
-        drawn = np.empty((len(which), shared + len(WHEEL_KINDS) * robots))
+        kinds = (*SHARED_KINDS, *WHEEL_KINDS * robots, "inertia")
+        drawn = np.empty((len(which), len(kinds)))
         world_kernels.fill_uniform(keys, first, drawn)
-        kinds = (*SHARED_KINDS, *WHEEL_KINDS * robots)
         low, high = np.array([disturbances.range_of(kind) for kind in kinds]).T
         drawn = low + drawn * (high - low)
         self.shared[which] = drawn[:, :shared]
-        self.wheels[which] = drawn[:, shared:].reshape(len(which), robots, len(WHEEL_KINDS))
+        self.wheels[which] = drawn[:, shared:-1].reshape(len(which), robots, len(WHEEL_KINDS))
+        self.inertia[which] = drawn[:, -1]
+        self.driven[which] = 0.0
         self.commands[which] = 0.0
         self.due[which] = 0.0
 
@@ -102,23 +114,42 @@ class DisturbanceState:
             due=np.concatenate([due[:, None], earlier[:, :-1]], axis=1),
         )
 
-    def moves(self, checks: int) -> StepMoves:
-        """The commands in force during a step with this many checks for collisions, one after each equal part of it."""
+    def moves(self, checks: int) -> tuple[DisturbanceState, StepMoves]:
+        """The state after a step, and what the motors do during it: it has this many checks for collisions, one after each equal
+        part of it."""
         length = self.task.step_time / checks
-        twists, lasts, after = [], [], []
+        twists, lasts, after, motors = [], [], [], self.driven
         for check in range(checks):
             parts = [
                 (driven, seconds)
                 for driven, seconds in self._twist_parts(check * length, length)
                 if seconds.any()
             ]
+            if self.task.disturbances.inertia.high > 0.0:
+                parts = list(self._slow_parts(parts, motors, max(1, round(length / STEP_SIZE_S))))
+                motors = parts[-1][0]
             twists += [driven for driven, _ in parts]
             lasts += [seconds for _, seconds in parts]
             after += [-1] * (len(parts) - 1) + [check]
         turn = np.zeros(twists[0].shape[:2])
         for driven, seconds in zip(twists, lasts, strict=True):
             turn += driven[:, :, 1] * seconds[:, None]
-        return StepMoves(np.stack(twists), np.stack(lasts), np.arange(len(after)), np.array(after), turn)
+        moves = StepMoves(np.stack(twists), np.stack(lasts), np.arange(len(after)), np.array(after), turn)
+        return replace(self, driven=motors), moves
+
+    def _slow_parts(
+        self, parts: Sequence[tuple[FloatArray, FloatArray]], motors: FloatArray, ticks: int
+    ) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """The ``parts`` of a step in ``ticks`` each, as motors follow them that are at ``motors`` (n, r, 2): as
+        ``kit.sim.motors.limited_speed``, where gaining and losing speed have one limit."""
+        with np.errstate(divide="ignore"):
+            limit = np.array([1.0, TURN_SHARE]) / self.inertia[:, None, None]
+        for asked, seconds in parts:
+            tick = seconds / ticks
+            change = np.where(tick[:, None, None] > 0.0, limit, 0.0) * tick[:, None, None]
+            for _ in range(ticks):
+                motors = motors + np.clip(asked - motors, -change, change)
+                yield motors, tick
 
     def _twist_parts(self, start: float, length: float) -> Iterator[tuple[FloatArray, FloatArray]]:
         """The twists (n, r, 2) of the parts of the ``length`` seconds after ``start``, one after the other, and how long each

@@ -23,6 +23,7 @@ from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.imu import ImuParams
 from kit.sim.plugins.joint_states import JointStatesParams
 from kit.sim.plugins.laser import LaserParams
+from kit.sim.plugins.tricycle_drive import TricycleDriveParams
 from kit.sim.plugins.tween import TweenParams
 from kit.sim.simulation import load_world
 from kit.world.catalogue import MapCard
@@ -37,6 +38,8 @@ CIRCLE_CORNERS = 24
 """A round footprint becomes a polygon around it with this many corners, at most 1 % further out."""
 RAY_TOLERANCE = math.radians(2.0)
 """Largest angle between an observed direction and the lidar's nearest ray: half the angle between two directions."""
+DRIVES = (DiffDriveParams, TricycleDriveParams)
+"""Plugins that move a robot."""
 ONLY_PUBLISH = (LaserParams, BumperParams, ImuParams, JointStatesParams)
 """Plugins that have no part in how a robot moves."""
 
@@ -64,7 +67,9 @@ class BatchRobot:
     max_speed: float = math.inf
     """The motors' limit [m/s]."""
     max_turn_rate: float = math.inf
-    """The motors' limit [rad/s]."""
+    """The motors' limit [rad/s]; of a tricycle that of its steering [rad]."""
+    wheelbase: float = 0.0
+    """How far a tricycle's front wheel, its origin, lies before its rear axle [m]; 0 where two wheels drive."""
     untouched: tuple[CornerPoints, ...] = ()
     """Convex polygons like the hull's that the other robot's lidar sees and that touch nothing."""
     own_ranges: tuple[float, ...] = ()
@@ -175,11 +180,21 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
         lidar_bits=np.where(first.robot.visible_parts * len(first.starts), hulls.polygon_bits, 0),
         corner_robot=robot_of,
         hull_radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
+        axle=first.robot.wheelbase,
         beams=make_beams(first.robot.ray_angles),
         max_range=first.robot.reach,
         own_ranges=np.array(first.robot.own_ranges, dtype=np.float32),
         noise_std=first.robot.noise if noise is None else noise,
     )
+
+
+def axle_twists(commands: FloatArray, wheelbase: float) -> FloatArray:
+    """(..., 2) forward [m/s] and turn [rad/s] of robots with these commands (..., 2): a tricycle's are its front wheel's speed and
+    angle [rad], as in ``kit.sim.motors.tricycle_twist``; without a ``wheelbase`` the commands are twists already."""
+    if not wheelbase:
+        return commands
+    speed, steering = commands[..., 0], commands[..., 1]
+    return np.stack([speed * np.cos(steering), speed * np.sin(steering) / wheelbase], axis=-1)
 
 
 def geometry_for_scans(
@@ -273,10 +288,19 @@ def _obstacle_parts(footprint: Footprint, driving: Sequence[Model]) -> Iterator[
 
 
 def _body(model: Model) -> Body:
-    if len(model.bodies) != 1 or model.joints:
-        what = model.joints[0] if model.joints else model.bodies[1]
+    """A robot's only body, or a tricycle's, whose wheels touch nothing and are seen by nobody."""
+    _, drive = _drive(model)
+    beside = [each for each in model.bodies if each.name != drive.body]
+    if isinstance(drive, TricycleDriveParams):
+        for footprint in (part for wheel in beside for part in wheel.footprints):
+            if footprint.mask or footprint.category:
+                raise UnsupportedWorld(
+                    f"{footprint.location}: in training a tricycle's wheels touch nothing: give this one no layers"
+                )
+    elif beside or model.joints:
+        what = model.joints[0] if model.joints else beside[0]
         raise UnsupportedWorld(f"{what.location}: training has no joints, and one body per robot")
-    return model.bodies[0]
+    return next(each for each in model.bodies if each.name == drive.body)
 
 
 def _laser(model: Model) -> LaserParams:
@@ -286,16 +310,16 @@ def _laser(model: Model) -> LaserParams:
     return lasers[0]
 
 
-def _drive(model: Model) -> tuple[PluginSpec, DiffDriveParams]:
+def _drive(model: Model) -> tuple[PluginSpec, DiffDriveParams | TricycleDriveParams]:
     for plugin in model.plugins:
-        if not isinstance(plugin.params, (DiffDriveParams, *ONLY_PUBLISH)):
+        if not isinstance(plugin.params, (*DRIVES, *ONLY_PUBLISH)):
             raise UnsupportedWorld(
-                f"{plugin.location}: training has no {plugin.type}; robots that it drives have a DiffDrive"
+                f"{plugin.location}: training has no {plugin.type}; robots that it drives have a DiffDrive or a TricycleDrive"
             )
-    drives = [(each, each.params) for each in model.plugins if isinstance(each.params, DiffDriveParams)]
+    drives = [(each, each.params) for each in model.plugins if isinstance(each.params, DRIVES)]
     if len(drives) != 1:
         raise UnsupportedWorld(
-            f"{model.location}: training needs a robot with one DiffDrive, not {len(drives)}"
+            f"{model.location}: training needs a robot with one DiffDrive or TricycleDrive, not {len(drives)}"
         )
     return drives[0]
 
@@ -320,7 +344,13 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
         if footprint.category & laser.mount.bits and not footprint_contains(footprint, laser.mount.origin)
     ]
     plugin, drive = _drive(model)
-    for limits in (drive.linear, drive.angular):
+    if isinstance(drive, TricycleDriveParams):
+        turning, largest, wheelbase = drive.steering, drive.max_steering, drive.wheelbase
+        if turning.speed > 0.0:
+            raise UnsupportedWorld(f"{plugin.location}: in training a tricycle's wheel is steered at once")
+    else:
+        turning, largest, wheelbase = drive.angular, drive.angular.speed, 0.0
+    for limits in (drive.linear, turning):
         if limits.acceleration > 0.0 or limits.deceleration > 0.0:
             raise UnsupportedWorld(f"{plugin.location}: in training motors have no acceleration limits")
     if drive.veer:
@@ -336,7 +366,8 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
         noise=laser.noise,
         lidar=laser.mount.origin,
         max_speed=drive.linear.speed or math.inf,  # 0 is no limit
-        max_turn_rate=drive.angular.speed or math.inf,
+        max_turn_rate=largest or math.inf,
+        wheelbase=wheelbase,
         own_ranges=_own_ranges(blocking, laser),
     )
 

@@ -16,6 +16,7 @@ from textwrap import wrap
 from typing import Any, NamedTuple, cast
 
 from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.maps.batch_map import DRIVES
 from kit.learning.maps.ray_directions import LEFT_RAYS
 from kit.learning.policies.node_goals.goal_count import NodeCount
 from kit.learning.policies.policy import Policy, PolicyError
@@ -24,7 +25,6 @@ from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
-from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.plugins.model_tf_publisher import frame_in_world
 from kit.sim.simulation import load_world
@@ -150,7 +150,7 @@ def robot_topics(task: LearningTask) -> tuple[RobotTopics, ...]:
     models, found = _models(task), []
     for name in task.robots_on(_first_card(task)):
         model = models[name]
-        (drive,) = [each.params for each in model.plugins if isinstance(each.params, DiffDriveParams)]
+        (drive,) = [each.params for each in model.plugins if isinstance(each.params, DRIVES)]
         (laser,) = [each.params for each in model.plugins if isinstance(each.params, LaserParams)]
         topics = RobotTopics(drive.topic, laser.topic, drive.odometry.odom_topic)
         found.append(topics if task.robots == 1 else RobotTopics(*map(model.topic, topics)))

@@ -1,4 +1,4 @@
-"""Defines what differs between a robot and its simulation: sensor noise, lost rays, late commands, wheels that are off.
+"""Defines what differs between a robot and its simulation: noise, lost rays, late commands, slow motors, wheels that are off.
 
 One record serves training (domain randomisation: J. Tobin et al., "Domain randomization for transferring deep neural
 networks from simulation to the real world", IROS 2017), evaluation and its sweep.
@@ -47,6 +47,8 @@ class UniformRange(NamedTuple):
 
 
 NONE = UniformRange(0.0, 0.0)
+TURN_SHARE = 3.0
+"""Slow motors change their turn by so many rad/s while their speed changes by 1 m/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +112,14 @@ DISTURBANCE_KINDS = (
         sweep=(0.0, 0.05, 0.1, 0.2, 0.3, 0.5),
     ),
     DisturbanceKind(
+        "inertia",
+        unit="s per m/s",
+        low=0.0,
+        high=100.0,
+        summary="Time the motors need to gain or lose 1 m/s, or 3 rad/s, as on ice.",
+        sweep=(0.0, 0.2, 0.5, 1.0, 2.0, 4.0),
+    ),
+    DisturbanceKind(
         "wheel_radius",
         unit="",
         low=-0.9,
@@ -146,6 +156,8 @@ class Disturbances:
     """s, by which every command is late."""
     command_jitter: UniformRange = NONE
     """s, up to which each command of each robot is late by another time, beside ``latency``."""
+    inertia: UniformRange = NONE
+    """s per m/s: 1 / the greatest acceleration [m/s^2]; that of turning is three times as many rad/s^2."""
     wheel_radius: UniformRange = NONE
     """Relative error: the robot moves ``1 + wheel_radius`` times as fast as it is told."""
     drift: UniformRange = NONE

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final, Literal
 
 from kit.geometry import Pose
+from kit.learning.tasks.disturbances import TURN_SHARE
 from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.goals.registry import read_goal
 from kit.learning.tasks.goals.target import REACH_TARGET
@@ -54,7 +55,7 @@ class LevelConditions:
     """What differs on a level from its map."""
 
     acceleration: float = 0.0
-    """Greatest change of speed [m/s^2], as on ice; three times as many rad/s^2 of turning. 0: none."""
+    """Greatest change of speed [m/s^2], as on ice; ``TURN_SHARE`` times as many rad/s^2 of turning. 0: none."""
     wheel_error: float = 0.0
     """The encoders' wheels differ by this share from what they are taken for; 0: odometry is exact."""
     fog: bool = False
@@ -103,7 +104,7 @@ def _limit_drive(plugin: PluginSpec, conditions: LevelConditions, motors: tuple[
     linear = SpeedLimits(acceleration, acceleration, top_speed)
     if isinstance(params, TricycleDriveParams):
         return replace(plugin, params=replace(params, linear=linear, odometry=odometry))
-    angular = SpeedLimits(3.0 * acceleration, 3.0 * acceleration, turn_rate)
+    angular = SpeedLimits(TURN_SHARE * acceleration, TURN_SHARE * acceleration, turn_rate)
     return replace(plugin, params=replace(params, linear=linear, angular=angular, odometry=odometry))
 
 

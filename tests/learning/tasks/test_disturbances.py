@@ -13,6 +13,7 @@ import pytest
 from kit.geometry import Pose
 from kit.learning.authoring.new_task import new_task_file
 from kit.learning.environment.batch import BatchEnv
+from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.catalogue import HALLWAY, WHEELCHAIRS
 from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, Disturbances, UniformRange
@@ -20,7 +21,9 @@ from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.sim.simulation import Simulation, load_world
+from kit.run.scenario import find_scenario
+from kit.school.game.levels import LevelConditions, apply_conditions
+from kit.sim.simulation import STEP_SIZE_S, Simulation, load_world
 from kit.world.catalogue import find_map
 from tests.cases import every_case
 from tests.learning.worlds import actions_of, short
@@ -31,6 +34,7 @@ ALL = Disturbances(
     dropped_rays=UniformRange(0.0, 0.3),
     latency=UniformRange(0.0, 0.3),
     command_jitter=UniformRange(0.0, 0.25),
+    inertia=UniformRange(0.0, 3.0),
     wheel_radius=UniformRange(-0.1, 0.2),
     drift=UniformRange(-0.3, 0.3),
 )
@@ -185,6 +189,52 @@ def test_late_commands_keep_to_the_motors_limits_as_in_the_single_world(tmp_path
     assert 0.9 * limit < fastest <= limit + 1e-9
 
 
+def test_slow_motors_drive_as_in_the_single_world_under_a_levels_ice() -> None:
+    task = replace(
+        disturbed(STRAIGHT, inertia=2.5), start=StartVariation(shifted=False), max_steps=60, step_time=0.2
+    )
+    batch, card = BatchEnv(task, 1, seed=4, autoreset=False), find_map("hall_straight")
+    batch.reset()
+    scenario = find_scenario("hall_straight", None, None)
+    icy = apply_conditions(scenario, LevelConditions(acceleration=1 / 2.5), task.actions.largest)
+    simulation = Simulation(icy.world, step_size=STEP_SIZE_S, has_subscribers=lambda topic: False)
+    simulation.move_model(card.robot, Pose(*batch.state.pose[0, 0].tolist()))
+    chance, ways = np.random.default_rng(3), []
+    for _ in range(30):
+        before = batch.state.pose[0, 0].copy()
+        step = batch.step(chance.integers(len(task.actions.names), size=1)).transition
+        forward, turn = step.twist[0, 0].tolist()
+        simulation.accept(
+            icy.driven.topic("cmd_vel"), Twist(linear=Vector3(x=forward), angular=Vector3(z=turn))
+        )
+        for _ in range(round(task.step_time / STEP_SIZE_S)):
+            simulation.step()
+        assert not step.hit.any()
+        assert np.abs(np.array(simulation.pose(card.robot)) - step.pose[0, 0]).max() < 1e-9
+        ways.append(math.dist(step.pose[0, 0, :2], before[:2]) / task.step_time)
+    assert max(np.abs(np.diff(ways))) <= 0.2 / 2.5 + 1e-4  # no step changes the speed by more
+    assert max(ways) > 0.1
+
+
+def test_slow_motors_add_to_late_commands() -> None:
+    moves = [Move.FORWARD] + [Move.STOP] * 5
+    fast, slow = (
+        poses(disturbed(STRAIGHT, latency=0.1, inertia=inertia), moves)[:, 0] for inertia in (0.0, 0.5)
+    )
+    ways = [np.hypot(*np.diff(path[:, :2], axis=0).T) for path in (fast, slow)]
+    assert ways[0][2:] == pytest.approx(0.0)
+    assert ways[1][0] < ways[0][0]
+    assert (ways[1][1:3] > 1e-3).all()
+    assert ways[1][-1] == pytest.approx(0.0)
+
+
+def test_slow_motors_of_a_tricycle_are_refused(tmp_path: Path) -> None:
+    task = read_task(new_task_file("mine", "depot", tmp_path)).task
+    BatchEnv(task, 1)
+    with pytest.raises(UnsupportedWorld, match="no inertia of a tricycle"):
+        BatchEnv(disturbed(task, inertia=1.0), 1)
+
+
 PAIR = replace(
     WHEELCHAIRS, cases=("pair_straight",), start=StartVariation(gap=0.4), lidar_noise=0.0, max_steps=60
 )
@@ -299,15 +349,16 @@ def test_a_world_draws_its_own_and_is_the_same_alone_or_among_many(task: Learnin
             assert single.observations[0].tobytes() == step.observations[i].tobytes()
             assert single.transition.pose[0].tobytes() == step.transition.pose[i].tobytes()
         state = together.state.disturbed
-        values.append(np.concatenate([state.shared, state.wheels.reshape(4, -1)], axis=1).copy())
-    drawn = np.unique(np.concatenate(values), axis=0)
-    assert len(drawn) >= 12  # four worlds, three episodes each
+        drawn = [state.shared, state.wheels.reshape(4, -1), state.inertia[:, None]]
+        values.append(np.concatenate(drawn, axis=1).copy())
+    found = np.unique(np.concatenate(values), axis=0)
+    assert len(found) >= 12  # four worlds, three episodes each
     kinds = ["lidar_noise", "dropped_rays", "latency", "command_jitter"] + [
         "wheel_radius",
         "drift",
     ] * task.robots
-    for column, kind in zip(drawn.T, kinds, strict=True):
+    for column, kind in zip(found.T, [*kinds, "inertia"], strict=True):
         low, high = ALL.range_of(kind)
         assert (column >= low).all()
         assert (column <= high).all()
-        assert len(np.unique(column)) == len(drawn)
+        assert len(np.unique(column)) == len(found)
