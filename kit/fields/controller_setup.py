@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,7 +17,7 @@ from kit.fields.planner import CostToGo, VehicleSize
 from kit.fields.trajectory import ComfortLimits, Trajectory, plan_trajectory
 from kit.geometry import Pose, wrap_angle
 from kit.plain_text import suggestion
-from kit.world.records import Circle, Footprint, Model, World
+from kit.world.records import Model, World
 
 WALL_MARGIN: Final = 0.01
 """m that a robot keeps from walls at least."""
@@ -144,11 +144,7 @@ def _driven_robot(model: Model) -> DrivenRobot:
         if bumper and isinstance(bumper.params, Mapping)
         else None
     )
-    points = [
-        (*body.pose.transform_point(*corner), radius)
-        for body in model.bodies
-        for corner, radius in _corner_points(body.footprints)
-    ]
+    points = model.outer_points
     return DrivenRobot(
         model.name,
         odometry=model.topic(str(drive.params.get("odom_pub", "odometry/filtered"))),
@@ -157,12 +153,3 @@ def _driven_robot(model: Model) -> DrivenRobot:
         reach=max((math.hypot(x, y) + radius for x, y, radius in points), default=0.0),
         half_width=max((abs(y) + radius for _, y, radius in points), default=0.0),
     )
-
-
-def _corner_points(footprints: Sequence[Footprint]) -> Iterator[tuple[tuple[float, float], float]]:
-    """Points of a body, with what lies around each of them [m]."""
-    for shape in (footprint.shape for footprint in footprints):
-        if isinstance(shape, Circle):
-            yield shape.center, shape.radius
-        else:
-            yield from ((point, 0.0) for point in shape.points)

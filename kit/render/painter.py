@@ -91,12 +91,12 @@ class Painter:
 
     def _is_coarse(self, scene: Scene, camera: Camera) -> bool:
         """Whether a gap that a robot just fits through is narrower than ``FINE_DOTS``."""
-        passage = _narrowest_robot(scene)
-        return 0.0 < passage < FINE_DOTS * camera.cell_height / self.encoder.down
+        widest = FINE_DOTS * camera.cell_height / self.encoder.down
+        return bool(scene.robots) and 0.0 < scene.narrowest_way < widest
 
     def _static_grid(self, scene: Scene, camera: Camera) -> Grid:
         """Returns the grid of the walls, redrawn if walls or camera changed."""
-        view = camera, _narrowest_robot(scene)
+        view = camera, scene.narrowest_way
         if self._floor_map is None or scene.walls is not self._walls:
             self._floor_map, self._view = FloorMap(scene), None
         if view != self._view:
@@ -112,13 +112,6 @@ class Painter:
                 self._solid = walled.mean(axis=(1, 3)) >= 0.5
                 self._faces = self._wall_cells & _beside(self._floor & ~self._wall_cells)
         return self._wall_grid
-
-
-def _narrowest_robot(scene: Scene) -> float:
-    """The narrowest gap [m] that a robot of the scene fits through, to the millimetre; 0 without robots."""
-    extents = [robot.extent for robot in scene.robots]
-    widths = [min(extent.width, extent.height) for extent in extents]
-    return round(min(filter(math.isfinite, widths), default=0.0), 3)
 
 
 MAX_RIM = 400

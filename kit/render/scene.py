@@ -164,10 +164,18 @@ class Scene:
     strokes: tuple[PenStroke, ...] = ()
     cells: SceneCells | None = None
     """What takes the place of the floor, where it is known by cells."""
+    passage: float = 0.0
+    """Width [m] of the narrowest way, where no robot is drawn that tells it: what is narrower belongs to a wall."""
 
     @property
     def robots(self) -> tuple[SceneBody, ...]:
         return tuple(body for body in self.bodies if body.is_robot)
+
+    @property
+    def narrowest_way(self) -> float:
+        """The narrowest gap [m] that a robot of the scene fits through, to the millimetre; without robots ``passage``."""
+        widths = [min(robot.extent.width, robot.extent.height) for robot in self.robots]
+        return round(min(filter(math.isfinite, widths), default=self.passage), 3)
 
     @property
     def bounds(self) -> SceneBounds:

@@ -28,6 +28,8 @@ SAME_SURFACE: Final = 0.3
 MAX_SOLID: Final = 0.1
 """An enclosed part that no robot can reach is solid, as the inside of a wall or a table is, if it takes no more than this
 share of the picture; a larger one is a room without a door."""
+WIDEST_WALL: Final = 2.0
+"""So is one that is nowhere wider than this many robots, however long: what is between the faces of a wall."""
 
 LIT_NEAR_SHARE: Final = 0.1
 """Up to this distance from its laser, as a share of the picture's height, the floor is lit as near."""
@@ -61,6 +63,7 @@ class FloorMap:
         rim = np.unique(np.concatenate((parts[0], parts[-1], parts[:, 0], parts[:, -1])))
         sizes = np.bincount(parts.ravel())
         kinds = np.where(sizes <= MAX_SOLID * parts.size, np.uint8(_SOLID), np.uint8(_OUTSIDE))
+        kinds[_narrow_parts(parts, len(sizes), WIDEST_WALL * scene.narrowest_way / self._dot)] = _SOLID
         kinds[rim] = _OUTSIDE
         if len(reached):
             kinds[reached] = _FLOOR
@@ -113,6 +116,20 @@ def _parts_between(walls: bytes, width: int, height: int) -> IndexArray:
     segments = np.frombuffer(walls).reshape(-1, 4)
     raster.draw_dots(grid, raster.line_dots(segments, width, height), _WALL)
     return connected_parts(grid == 0)
+
+
+def _narrow_parts(parts: IndexArray, count: int, width: float) -> BoolArray:
+    """(count,): which of the parts have no square of this many dots anywhere in them. A wall parts two of them."""
+    side = int(width)
+    narrow: BoolArray = np.zeros(count, dtype=bool)
+    if not 1 < side < min(parts.shape):
+        return narrow
+    sums = np.zeros((parts.shape[0] + 1, parts.shape[1] + 1), dtype=np.int32)
+    np.cumsum(np.cumsum(parts > 0, axis=0, dtype=np.int32), axis=1, out=sums[1:, 1:])
+    squares = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
+    narrow[:] = True
+    narrow[np.unique(parts[: 1 - side, : 1 - side][squares == side * side])] = False
+    return narrow
 
 
 def _with_margin(bounds: SceneBounds) -> SceneBounds:

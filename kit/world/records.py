@@ -128,11 +128,21 @@ class Circle:
     center: tuple[float, float]
     radius: float
 
+    @property
+    def outer_points(self) -> list[tuple[tuple[float, float], float]]:
+        """Its middle, and what lies around it [m]."""
+        return [(self.center, self.radius)]
+
 
 @dataclass(frozen=True, slots=True)
 class Polygon:
     points: tuple[tuple[float, float], ...]
     """The corners of the convex hull of what the file lists, counter-clockwise, in the body's frame."""
+
+    @property
+    def outer_points(self) -> list[tuple[tuple[float, float], float]]:
+        """Its corners, around which nothing lies."""
+        return [(point, 0.0) for point in self.points]
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,6 +253,27 @@ class Model:
         if name.startswith("/"):
             return name[1:]
         return f"{self.namespace}_{name}" if self.namespace else name
+
+    @property
+    def outer_points(self) -> list[tuple[float, float, float]]:
+        """Corners and middles of its footprints in its own frame, and what lies around each: ``x y radius`` [m]."""
+        return [
+            (*body.pose.transform_point(*point), radius)
+            for body in self.bodies
+            for footprint in body.footprints
+            for point, radius in footprint.shape.outer_points
+        ]
+
+    @property
+    def width(self) -> float:
+        """The shorter side of the rectangle around it [m]: it fits through no narrower gap. 0 without footprints."""
+        points = self.outer_points
+        sides = (
+            max((point[axis] + point[2] for point in points), default=0.0)
+            - min((point[axis] - point[2] for point in points), default=0.0)
+            for axis in (0, 1)
+        )
+        return min(sides)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -122,3 +122,23 @@ def test_too_few_rays_light_nothing(count: int) -> None:
 def test_neighbouring_ends_are_one_surface_unless_one_lies_far_behind() -> None:
     lengths = np.array([1.0, 1.0, 1.0, 3.0, 3.0])
     assert len(seen_surfaces(rays(0.0, 0.0, lengths, 0.0, 0.08))) == 3
+
+
+@pytest.mark.parametrize(("thickness", "is_solid"), [(0.35, True), (0.6, False)])
+def test_what_two_robots_do_not_fit_into_side_by_side_is_the_inside_of_a_wall(
+    thickness: float, is_solid: bool
+) -> None:
+    """A robot of 0.2 m in a room whose walls have two faces; together they take more than what furniture may."""
+    far = 4.0 + thickness
+    walls = box_walls(((-thickness, -thickness, far, far), (0.0, 0.0, 4.0, 4.0)))
+    frame = Painter(BrailleEncoder(), shaded=True).paint(Scene(walls, (robot(1.0, 1.0),)), CAMERA)
+    assert (chr(frame.glyphs[cell(-thickness / 2, 2.0)]) == "█") is is_solid
+    assert frame.bg[cell(2.0, 2.0)] == Role.FLOOR
+
+
+def test_a_picture_without_robots_draws_walls_as_thick_as_they_are_for_the_robot_that_will_drive() -> None:
+    walls = box_walls(((0.0, 0.0, 4.0, 4.0), (1.0, 1.0, 1.25, 3.0)))
+    wall = cell(1.125, 2.0)
+    for passage, is_solid in ((0.0, False), (0.3, True)):
+        frame = Painter(BrailleEncoder()).paint(Scene(walls, passage=passage), CAMERA)
+        assert (chr(frame.glyphs[wall]) == "█") is is_solid, passage

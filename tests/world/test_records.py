@@ -57,3 +57,11 @@ def test_a_world_can_be_pickled_and_copied() -> None:
             assert [model.pose for model in again.models] == [model.pose for model in world.models]
             with pytest.raises(TypeError):
                 again.layer_bits["new"] = 1
+
+
+def test_a_model_is_as_wide_as_the_shorter_side_of_what_its_footprints_take() -> None:
+    world = load_world(find_map("simple").world_file)
+    robot = next(model for model in world.models if model.plugins)
+    xs, ys = zip(*((x, y) for x, y, _ in robot.outer_points), strict=True)
+    assert robot.width == pytest.approx(min(max(xs) - min(xs), max(ys) - min(ys)))
+    assert Model("m", "", Pose(), Path("m.yaml"), (), (), (), SourceLocation(Path("m.yaml"))).width == 0.0

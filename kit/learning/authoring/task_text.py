@@ -13,7 +13,7 @@ import numpy as np
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.maps.batch_floor import hull_radius, measure_floor
+from kit.learning.maps.batch_floor import hull_radius, hull_width, measure_floor
 from kit.learning.maps.batch_map import load_batch_map
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import tasks_folder
@@ -285,4 +285,5 @@ def build_case_scene(task: LearningTask, card: MapCard, case: TaskCase) -> Scene
         walls=batch_map.walls,
         targets=tuple(Disc(pose.x, pose.y, task.target_radius) for pose in targets),
         marks=tuple(SceneMark(pose.x, pose.y, "S") for pose in starts),
+        passage=hull_width(batch_map),
     )

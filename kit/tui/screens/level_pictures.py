@@ -63,6 +63,7 @@ def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[s
         walls=scenario.world.wall_segments,
         targets=tuple(Disc(x, y, radius) for x, y in places),
         marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
+        passage=0.0 if scenario.driven is None else scenario.driven.width,
     )
     return scene_rows(scene, columns, rows, ENCODERS[glyphs](False))
 
