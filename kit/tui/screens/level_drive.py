@@ -202,6 +202,7 @@ class LevelDrive(WatchScreen):
         else:
             self.host.open(lambda: scenario, self._teleop, paused=True)
         self.view = None  # only now: until another world was asked for, there were views of the one before
+        self.world.withdraw()
         self.renew_laser_map(draws=self._level.conditions.fog)
 
     def _open_race(self) -> Session:

@@ -330,6 +330,10 @@ class WorldView(FrameView):
             camera = camera.following(*robot.pose.transform_point(*robot.extent.middle))
         return camera
 
+    def withdraw(self) -> None:
+        """Takes back what was offered and has not been drawn yet."""
+        self._offered = None
+
     def _draw_offered(self) -> None:
         if self._offered is None or self._later is not None:
             return

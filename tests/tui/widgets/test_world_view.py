@@ -590,6 +590,23 @@ def test_the_last_offer_is_drawn_even_if_no_answer_comes() -> None:
     run_in(app, script, SIZE)
 
 
+def test_what_is_withdrawn_is_never_asked_for() -> None:
+    app = ViewApp()
+
+    async def script(pilot: Pilot[None]) -> None:
+        app.terminal.answers = False
+        first, asked = scenes(1)[0], []
+        app.view.offer(lambda: first)
+        await painted(app)
+        app.view.offer(lambda: asked.append(True) or first)
+        app.view.withdraw()
+        app.view._draw_later()  # the answer comes
+        await pilot.pause()
+        assert not asked
+
+    run_in(app, script, SIZE)
+
+
 @pytest.mark.long
 def test_an_answering_terminal_gets_a_steady_stream() -> None:
     app = ViewApp()
