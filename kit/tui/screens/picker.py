@@ -20,15 +20,14 @@ from kit.plain_text import wrap
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialog import Dialog
 
-LIST_WIDTH: Final = 76
+LIST_WIDTH, WIDEST = 76, 120
+"""Columns of a list with its border, at least where the screen has them, and at most."""
 HIGHEST: Final = 22
-"""Most rows of a list with its border and the field above it."""
+"""Most rows of a list with its border and the field above it, on a screen that is not much higher."""
 ROWS_AROUND: Final = 3
 """Rows of these alone."""
-COLUMNS_AROUND: Final = 8
+COLUMNS_AROUND: Final = 7
 """Columns of the border, of the mark of the chosen line and of the scroll bar."""
-LINE: Final = LIST_WIDTH - COLUMNS_AROUND
-"""Characters of a line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +62,15 @@ class Picker(Dialog[str | None]):
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     Picker > Vertical {{
-        width: {LIST_WIDTH}; max-width: 100%; height: auto; max-height: {HIGHEST}; border: solid $foreground; padding: 0 1;
+        width: {LIST_WIDTH}; max-width: 100%; height: auto; border: solid $foreground; padding: 0 1;
     }}
     Picker Input, Picker Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
-    Picker OptionList {{ border: none; padding: 0; height: auto; max-height: {HIGHEST - ROWS_AROUND}; background: transparent; }}
+    Picker OptionList {{
+        border: none; padding: 0; height: auto; background: transparent; scrollbar-size-vertical: 1;
+        scrollbar-color: $foreground 50%; scrollbar-background: $background;
+        scrollbar-color-hover: $foreground; scrollbar-background-hover: $background;
+        scrollbar-color-active: $foreground; scrollbar-background-active: $background;
+    }}
     Picker OptionList > .option-list--option-highlighted {{
         color: $foreground; background: transparent; text-style: none;
     }}
@@ -98,10 +102,13 @@ class Picker(Dialog[str | None]):
         self.query_one(Input).focus()
 
     def on_resize(self, event: events.Resize) -> None:
-        highest = min(HIGHEST, event.size.height)
-        self.query_one(Vertical).styles.max_height = highest
-        self.query_one(OptionList).styles.max_height = max(1, highest - ROWS_AROUND)
+        self.query_one(OptionList).styles.max_height = max(1, self._highest - ROWS_AROUND)
         self.replace_choices(self._choices)
+
+    @property
+    def _highest(self) -> int:
+        """Most rows of the list with what is around it: a high screen shows more than the lowest."""
+        return min(self.size.height, max(HIGHEST, self.size.height * 3 // 4))
 
     def on_input_changed(self, event: Input.Changed) -> None:
         self._is_entered = False
@@ -129,8 +136,11 @@ class Picker(Dialog[str | None]):
         """Shows these from now on, with what is typed and highlighted as it is."""
         self._choices = tuple(choices)
         self._width = max((len(choice.name) for choice in choices), default=0) + 2
+        longest = max((len(choice.text) for choice in choices), default=0) + self._width + COLUMNS_AROUND
+        self._columns = max(LIST_WIDTH, min(longest, WIDEST))
         if self.is_mounted and self.is_attached:
             options = self.query_one(OptionList)
+            self.query_one(Vertical).styles.width = self._columns
             if options.highlighted is not None:
                 self._chosen = options.get_option_at_index(options.highlighted).id
             self._fill(self.query_one(Input).value)
@@ -155,7 +165,7 @@ class Picker(Dialog[str | None]):
                 for option in options.options
                 if isinstance(option.prompt, Text)
             )
-            self.query_one(Vertical).styles.min_height = min(rows + ROWS_AROUND, HIGHEST, self.size.height)
+            self.query_one(Vertical).styles.min_height = min(rows + ROWS_AROUND, self._highest)
         if shown:
             options.highlighted = at
 
@@ -169,6 +179,6 @@ class Picker(Dialog[str | None]):
 
     def _line(self, choice: PickerItem, *, is_chosen: bool) -> Text:
         """Name and text; what does not fit on a line stands below the text."""
-        lines = wrap(choice.text, max(20, min(LINE, self.size.width - COLUMNS_AROUND) - self._width))
+        lines = wrap(choice.text, max(20, min(self._columns, self.size.width) - COLUMNS_AROUND - self._width))
         text = f"{choice.name:{self._width}}" + ("\n  " + " " * self._width).join(lines)
         return Text.assemble("> " if is_chosen else "  ", (text, "reverse bold" if is_chosen else ""))

@@ -8,7 +8,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.tui.screens.picker import LINE, Picker, PickerItem
+from kit.tui.screens.picker import LIST_WIDTH, Picker, PickerItem
 from tests.tui.lesson_stage import rows, stage, text
 from tests.tui.screens.test_dialogs import LONG
 from tests.tui.screens.test_start import house as house  # the fixture
@@ -73,7 +73,7 @@ def test_a_long_text_goes_on_below_its_beginning() -> None:
     assert len(lines) > 1
     first = lines[0].index("one word")
     assert {len(line) - len(line.lstrip("│ ")) for line in lines[1:]} == {first}
-    assert all(len(line.strip(" │")) <= LINE for line in lines)
+    assert all(len(line.strip(" │")) <= LIST_WIDTH for line in lines)
 
 
 @pytest.mark.parametrize(
@@ -128,3 +128,16 @@ def test_a_list_fits_a_small_terminal_with_the_chosen_line_in_sight(size: tuple[
         assert min(places) >= len("│   thing 10  "), "what goes on below is indented"
 
     stage(lambda theme: Picker("Things", choices), scene, size=size)
+
+
+@pytest.mark.long
+def test_a_large_screen_shows_more_entries_and_breaks_no_line_that_fits() -> None:
+    longest = f"begins {'x' * 80} ends"
+    choices = [PickerItem(str(number), f"thing {number}", longest) for number in range(60)]
+
+    async def scene(pilot: Pilot[None]) -> None:
+        whole = [line for line in rows(pilot) if "begins" in line and "ends" in line]
+        assert len(whole) == sum("begins" in line for line in rows(pilot))
+        assert len(whole) > pilot.app.size.height // 2
+
+    stage(lambda theme: Picker("Things", choices), scene, size=(200, 50))
