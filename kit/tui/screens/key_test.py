@@ -11,32 +11,47 @@ from typing import ClassVar, Final
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Container, Vertical
-from textual.widgets import Static
+from textual.containers import Container
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
+from kit.document.rows import MARGIN, Row, at_both_edges, broken, fitted, row, side_by_side
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import DRIVE_KEYS, DriveKey
 from kit.tui.input.modes import Clock, KeyEventKind
 from kit.tui.input.screen import DriveScreen
-from kit.tui.rows.key_rows import bindings
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.terminal import TerminalDecision
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 
-ROOMY: Final = (140, 34)
-"""Columns and rows of a terminal in which all keys stand below each other, with room between them."""
-_BAR, _LONG_BAR = 4, 40
-_TABLE_ROWS: Final = 7
-_KEPT: Final = 50
-"""Lines of the log: more than any screen shows."""
-_WORDS: Final = MappingProxyType(
+BESIDE: Final = (110, 30)
+"""Columns and rows of a terminal in which what arrived stands beside the keys, which have a column to themselves."""
+KEYS_WIDTH: Final = 60
+"""Columns of the keys there; on a very wide terminal they take more."""
+NAME: Final = 13
+"""Columns of a key's name with the blanks around it, and of its message with one before it."""
+MODE_ROWS: Final = 2
+LEAST_LOG: Final = 5
+"""Rows of what arrived, with its title and the empty one before it."""
+KEPT: Final = 50
+"""Lines of what arrived: more than any screen shows."""
+WORDS: Final = MappingProxyType(
     {
-        KeyEventKind.PRESS: "press",
-        KeyEventKind.REPEAT: "repeat",
-        KeyEventKind.RELEASE: "release",
-        None: "timeout",
+        KeyEventKind.PRESS: ("press", "good"),
+        KeyEventKind.REPEAT: ("repeat", "dim"),
+        KeyEventKind.RELEASE: ("release", "bold"),
+        None: ("timeout", "warn"),
     }
 )
+"""What came, in a word and its style."""
+MEANINGS: Final = (
+    ("press", "a key went down: its bar is full, and the robot drives"),
+    ("repeat", "it is held; how fast they come depends on your keyboard's settings"),
+    ("release", "it went up: only some terminals tell, and then driving is exact"),
+    ("timeout", "nothing came for so long that the kit takes the key as up"),
+)
+"""What is said beside what arrived, where there is room, and before anything has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,25 +63,30 @@ class KeyLogEntry:
     gap: float | None
     messages: tuple[str, ...]
 
-    def __str__(self) -> str:
+    def row(self) -> Row:
         gap = f"+{1000 * self.gap:.0f} ms" if self.gap is not None and self.gap < 10 else ""
-        return f"{gap:>8}  {_WORDS[self.kind]:<8} {self.key:<18} {' '.join(self.messages)}".rstrip()
+        word, style = WORDS[self.kind]
+        return row(
+            (f"{gap:>8}  ", "dim"),
+            (f"{word:<8} ", style),
+            f"{self.key:<18} ",
+            (" ".join(self.messages), "dim"),
+        )
 
 
-class KeyTestScreen(DriveScreen):
-    """Shows what a key press becomes on this terminal. In ASCII, and drawn only when something comes."""
+class KeyTestScreen(RowsScreen[None], DriveScreen):
+    """Shows what a key press becomes on this terminal. Drawn only when something comes."""
 
-    CSS = """
-    KeyTestScreen Static { width: 1fr; height: auto; padding: 0 1; }
-    KeyTestScreen #title { text-style: bold; }
-    KeyTestScreen #mode { height: 2; }
-    KeyTestScreen #log { height: 1fr; margin-top: 1; }
-    KeyTestScreen #parts, KeyTestScreen #table { height: auto; }
-    KeyTestScreen #parts { height: 1fr; layout: vertical; }
-    KeyTestScreen.-roomy #parts { layout: horizontal; align-horizontal: center; margin-top: 2; }
-    KeyTestScreen.-roomy #table { width: 76; height: 1fr; }
-    KeyTestScreen.-roomy #mode { height: 4; }
-    KeyTestScreen.-roomy #log { width: 60; margin-top: 0; }
+    DEFAULT_CSS = f"""
+    KeyTestScreen {{ layout: vertical; }}
+    KeyTestScreen #heading, KeyTestScreen #footer {{ height: 1; }}
+    KeyTestScreen #mode {{ height: {MODE_ROWS}; }}
+    KeyTestScreen #parts {{ height: 1fr; }}
+    KeyTestScreen #keys {{ height: auto; }}
+    KeyTestScreen #log {{ height: 1fr; }}
+    KeyTestScreen.-beside #parts {{ layout: horizontal; }}
+    KeyTestScreen.-beside #keys {{ width: 3fr; height: 1fr; min-width: {KEYS_WIDTH}; }}
+    KeyTestScreen.-beside #log {{ width: 4fr; }}
     """
     screen_actions = ScreenActions(
         "key test",
@@ -80,60 +100,107 @@ class KeyTestScreen(DriveScreen):
 
     def __init__(self, terminal: TerminalDecision | None = None, clock: Clock = time.monotonic) -> None:
         super().__init__(terminal, clock)
-        self._log: deque[KeyLogEntry] = deque(maxlen=_KEPT)
+        self._log: deque[KeyLogEntry] = deque(maxlen=KEPT)
         self._last: float | None = None
 
     def compose(self) -> ComposeResult:
-        yield Static(
-            "Key test: press and hold keys     z key mode   x close   ^C quit", id="title", markup=False
-        )
+        yield TextRows(id="heading")
+        yield TextRows(id="mode")
         with Container(id="parts"):
-            with Vertical(id="table"):
-                yield Static(self._mode_text(), id="mode", markup=False)
-                yield Static(self._table_text(), id="keys", markup=False)
-            yield Static(id="log", markup=False)
+            yield TextRows(id="keys")
+            yield TextRows(id="log")
+        yield TextRows(id="footer")
 
     def on_resize(self, event: events.Resize) -> None:
-        """A large terminal shows the keys in one column with longer bars, and what arrived beside them."""
-        self.set_class(event.size.width >= ROOMY[0] and event.size.height >= ROOMY[1], "-roomy")
-        self.query_one("#keys", Static).update(self._table_text())
+        self.set_class(self._is_beside, "-beside")
+        self.call_after_refresh(self._show)
 
     def action_close_key_test(self) -> None:
         self.dismiss()
 
     def key_received(self, kind: KeyEventKind | None, key: str, messages: tuple[str, ...]) -> None:
         now = self._clock()
-        self._log.appendleft(
-            KeyLogEntry(kind, key, None if self._last is None else now - self._last, messages)
-        )
+        gap = None if self._last is None else now - self._last
+        self._log.appendleft(KeyLogEntry(kind, key, gap, messages))
         self._last = now
-        self.query_one("#log", Static).update("\n".join(map(str, self._log)))
-        self.drive_status_changed()
+        self._show()
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
-        self.query_one("#keys", Static).update(self._table_text())
+        self._show()
 
     def drive_status_changed(self) -> None:
-        self.query_one("#mode", Static).update(self._mode_text())
+        self._show()
 
-    def _mode_text(self) -> str:
-        if self.drive.timeouts is None:
-            return self.drive.status
-        first, later = (round(1000 * seconds) for seconds in self.drive.timeouts)
-        return f"{self.drive.status}\nup when silent for {first} ms after a press, {later} ms after a repeat"
+    # What is shown
 
-    def _table_text(self) -> str:
-        held = self.drive.state.held
-        if self.has_class("-roomy"):
-            return "\n\n".join(_cell(row, held.get(row.name, 0.0), _LONG_BAR) for row in DRIVE_KEYS)
-        cells = [_cell(row, held.get(row.name, 0.0), _BAR) for row in DRIVE_KEYS]
-        right = [*cells[_TABLE_ROWS:], *[""] * _TABLE_ROWS]
-        return "\n".join(
-            f"{one}  {two}".rstrip() for one, two in zip(cells[:_TABLE_ROWS], right, strict=False)
+    @property
+    def _is_beside(self) -> bool:
+        return self.size.width >= BESIDE[0] and self.size.height >= BESIDE[1]
+
+    def _show(self) -> None:
+        if not self.query(TextRows):  # while the kit is left
+            return
+        width = self.size.width
+        title = row(("Key test", "bold"), ("  press and hold keys", "dim"))
+        self._rows("heading").show([at_both_edges(title, row((self.drive.choice.mode, "bold")), width)])
+        self._rows("mode").show([fitted(each, width) for each in self._mode_rows()])
+        if self._is_beside:
+            self._rows("keys").show(self._key_column())
+        else:
+            self._rows("keys").show_all(self._key_pairs(width))
+        self._rows("log").show(self._log_rows())
+        self._rows("footer").show([footer(self.screen_actions, width)])
+
+    def _mode_rows(self) -> list[Row]:
+        """How keys drive on this terminal, and when one counts as up."""
+        told = [row(f" {self.drive.status}")]
+        if self.drive.timeouts is not None:
+            first, later = (round(1000 * seconds) for seconds in self.drive.timeouts)
+            silence = f" up when silent for {first} ms after a press, {later} ms after a repeat"
+            told.append(row((silence, "dim")))
+        return told
+
+    def _key_column(self) -> list[Row]:
+        """One key below the other, over the height that there is."""
+        size = self._rows("keys").size
+        blank = [row()] * max(0, (size.height - 2) // len(DRIVE_KEYS) - 1)
+        keys = [each for key in DRIVE_KEYS for each in (self._key_row(key, size.width - MARGIN), *blank)]
+        return [ruled_title("keys that drive", size.width - MARGIN), row(), *keys]
+
+    def _key_pairs(self, width: int) -> list[Row]:
+        """The keys in two columns."""
+        half, count = width // 2, (len(DRIVE_KEYS) + 1) // 2
+        left, right = (
+            [self._key_row(key, half - MARGIN) for key in keys]
+            for keys in (DRIVE_KEYS[:count], DRIVE_KEYS[count:])
+        )
+        return [ruled_title("keys that drive", width), *side_by_side(left, right, half)]
+
+    def _key_row(self, key: DriveKey, width: int) -> Row:
+        """A key, a bar for how strongly it pushes, and its message; a key that is down stands out."""
+        strength = self.drive.state.held.get(key.name, 0.0)
+        room = width - 2 * NAME
+        bar = max(round(room * strength), 1 if strength else 0)
+        style = "good" if strength else ""
+        return row(
+            (f" {key.label:<{NAME - 1}}", style),
+            ("█" * bar, style),
+            ("─" * (room - bar), "dim"),
+            (f" {key.pressed:<{NAME - 1}}", style or "dim"),
         )
 
-
-def _cell(row: DriveKey, strength: float, length: int) -> str:
-    """A key, a bar of up to ``length`` for how strongly it pushes, and its message."""
-    bar = "#" * max(round(length * strength), 1 if strength else 0)
-    return f"{row.label:<11} [{bar:<{length}}] {row.pressed:<9}"
+    def _log_rows(self) -> list[Row]:
+        """What may arrive, and what has, the newest first; the one gives way to the other where there is no room for both."""
+        width, height = self._rows("log").size
+        told = [
+            row((f" {word:<9}", WORDS[kind][1]), text)
+            for (word, text), kind in zip(MEANINGS, WORDS, strict=True)
+        ]
+        meant = [
+            ruled_title("what may arrive", width),
+            *(each for parts in told for each in broken(parts, width)),
+        ]
+        arrived = [ruled_title("what arrived", width, "newest first"), *(each.row() for each in self._log)]
+        if len(meant) + LEAST_LOG <= height:
+            return [*meant, row(), *arrived]
+        return arrived if self._log else meant
