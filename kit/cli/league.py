@@ -125,7 +125,6 @@ def new(folder: Path, title: str, races: tuple[str, ...], tag: tuple[str, ...]) 
 def submit(context: click.Context, controller: str | None, agent: str | None, name: str | None) -> None:
     """Enter a program or an agent, or renew your entry of that name."""
     from kit.school.game.league import entries
-    from kit.school.game.race import DriverKind
 
     if (controller is None) == (agent is None):
         messages.fail("Give either --controller NAME or --agent RUN.")
@@ -133,14 +132,14 @@ def submit(context: click.Context, controller: str | None, agent: str | None, na
         try:
             if controller is not None:
                 found = find_controller(controller, workspace.controllers)
-                driver, own_name, program = DriverKind.CONTROLLER, found.name, found.file.read_bytes()
+                own_name, program = found.name, found.file.read_bytes()
             else:
-                driver, own_name = DriverKind.AGENT, Path(agent or "").stem
+                own_name = Path(agent or "").stem
                 program = entries.program_of_agent(agent or "", workspace.runs)
         except (LookupError, OSError) as error:
             messages.fail(messages.describe_error(error))
         league.programme()
-        entries.submit(league.folder, name or own_name, driver, program)
+        entries.submit(league.folder, name or own_name, program)
         messages.say(f"{name or own_name} is entered. `kit league run` drives its matches.")
 
 

@@ -57,4 +57,4 @@ def test_a_class_has_a_league_in_a_folder(tmp_path: Path) -> None:
         tmp_path, "--folder", str(tmp_path / "class"), "submit", "--controller", str(tmp_path / "laser.py")
     )
     assert entered.exit_code == 0
-    assert (tmp_path / "class/entries/laser.controller.py").read_bytes() == LASER
+    assert (tmp_path / "class/entries/laser.py").read_bytes() == LASER

@@ -11,7 +11,6 @@ import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from importlib import import_module
-from importlib.resources import files
 from textwrap import wrap
 from typing import Any, NamedTuple, cast
 
@@ -21,8 +20,8 @@ from kit.learning.maps.ray_directions import LEFT_RAYS
 from kit.learning.policies.node_goals.goal_count import NodeCount
 from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import policy_bytes
+from kit.learning.policies.policy_node_text import GOAL_PROGRAMS, can_count, node_text
 from kit.learning.tasks.actions import DiscreteActions
-from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
 from kit.sim.plugins.laser import LaserParams
@@ -30,10 +29,6 @@ from kit.sim.plugins.model_tf_publisher import frame_in_world
 from kit.sim.simulation import load_world
 from kit.world.catalogue import MapCard
 from kit.world.records import Model
-
-LEARNED_MARK = "# --- what was learned ---\n"
-COUNT_MARK = "# --- how its goal is counted ---\n"
-GOAL_PROGRAMS = "kit.learning.policies.node_goals"
 
 
 class RobotTopics(NamedTuple):
@@ -53,14 +48,7 @@ def format_policy_node(policy: Policy) -> str:
     policy.check_fits(task)
     if refused := node_refusals(task):
         raise PolicyError(f"no node can be written for this policy: {'; '.join(refused)}.")
-    template = files("kit.learning.policies").joinpath("policy_node_template.py").read_text()
-    head, _, tail = template.partition(LEARNED_MARK)
-    _, _, tail = tail.partition(LEARNED_MARK)
-    between, _, tail = tail.partition(COUNT_MARK)
-    _, _, rest = tail.partition(COUNT_MARK)
-    count = _count_text(task.goal if task.observation.achieved else None)
-    marked = f"{LEARNED_MARK}{_format_constants(policy, task)}{LEARNED_MARK}{between}{COUNT_MARK}{count}{COUNT_MARK}"
-    return f"{head}{marked}{rest}"
+    return node_text(_format_constants(policy, task), task.goal.kind if task.observation.achieved else None)
 
 
 def node_refusals(task: LearningTask) -> tuple[str, ...]:
@@ -91,7 +79,7 @@ def _refusals(task: LearningTask) -> Iterator[str]:
 
 def _refusals_to_count(task: LearningTask) -> Iterator[str]:
     goal, known = task.goal, CaseArrays(task).goal_cases
-    if not _can_count(goal):
+    if not can_count(goal.kind):
         yield f"agents see how much is achieved, which a node cannot count for the goal {goal.kind}"
     elif not goal.is_route and any(goal.node_facts(each) != goal.node_facts(known[0]) for each in known):
         yield "agents see how much is achieved, which a node can count for one case only, and there are several"
@@ -101,25 +89,12 @@ def _all_topics(topics: Sequence[RobotTopics]) -> list[str]:
     return [name for robot in topics for name in robot]
 
 
-def _count_text(goal: Goal | None) -> str:
-    """The classes by which a node counts a goal, as their files have them; None: those of a node that is not told."""
-    common = _class_text(files(GOAL_PROGRAMS).joinpath("goal_count.py").read_text())
-    own = "" if goal is None else _class_text(files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py").read_text())
-    name = own.removeprefix("class ").partition("(")[0] or "NodeCount"
-    return f"{common}{own}COUNT = {name}\n\n\n"
-
-
-def _class_text(program: str) -> str:
-    """What a file holds from its first class on."""
-    return "class " + program.partition("\nclass ")[2].rstrip() + "\n\n\n"
-
-
 def node_count(task: LearningTask) -> NodeCount:
     """Counts the goal as the node of a policy of this task does. ValueError where none can: see ``node_refusals``."""
     if not task.observation.achieved:
         return NodeCount({})
     goal = task.goal
-    if not _can_count(goal):
+    if not can_count(goal.kind):
         raise ValueError(f"a node cannot count the goal {goal.kind}")
     counts = vars(import_module(f"{GOAL_PROGRAMS}.{goal.kind}")).values()
     kind = next(each for each in counts if isinstance(each, type) and NodeCount in each.__bases__)
@@ -129,10 +104,6 @@ def node_count(task: LearningTask) -> NodeCount:
 def _goal_facts(task: LearningTask) -> dict[str, Any]:
     """What a node must know of the goal that it counts."""
     return {**task.goal.node_facts(CaseArrays(task).goal_cases[0]), "step_time": task.step_time}
-
-
-def _can_count(goal: Goal) -> bool:
-    return files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py").is_file()
 
 
 def _first_card(task: LearningTask) -> MapCard:

@@ -30,7 +30,6 @@ from kit.school.game.league.league import League
 from kit.school.game.league.league_blocks import KEYS, matches_table, standings_table, summary_blocks
 from kit.school.game.league.standings import Match, Standings, match_recordings, read_standings
 from kit.school.game.league.tag_game import tag_scenario
-from kit.school.game.race import DriverKind
 from kit.school.game.starts import film_scenario
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
@@ -262,13 +261,10 @@ class LeagueScreen(RowsScreen[None]):
         kind, _, name = picked.partition(" ")
         try:
             if kind == "program":
-                driver, program = DriverKind.CONTROLLER, programs[name].file.read_bytes()
+                program = programs[name].file.read_bytes()
             else:
-                driver, program = (
-                    DriverKind.AGENT,
-                    await to_thread(program_of_agent, name, self._workspace.runs),
-                )
-            await to_thread(submit, self._league.folder, name, driver, program)
+                program = await to_thread(program_of_agent, name, self._workspace.runs)
+            await to_thread(submit, self._league.folder, name, program)
         except (LeagueError, OSError) as error:
             self.app.push_screen(MessageDialog("Not entered", str(error)))
             return

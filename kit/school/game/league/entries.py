@@ -1,6 +1,7 @@
-"""The entries of a league: a folder with one program for each entrant, named after it and after who drives.
+"""The entries of a league: a folder with one program for each entrant, named after it.
 
-An agent enters as the ROS 2 node that it would be on a robot, so a match runs programs alone. A file belongs to who has put it
+An agent enters as the ROS 2 node that it would be on a robot, so a match runs programs alone, and is known by that program, not by
+what anybody says of it. A file belongs to who has put it
 there; in a class's folder nobody can replace or remove another's. Whose name is whose, the league's owner records with each run, so
 that who renews an entry keeps its name.
 """
@@ -18,6 +19,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.controllers import ControllerFile, controller_title, kit_controllers
+from kit.learning.policies.policy_node_text import TITLE, learned_constants
 from kit.plain_files import open_plain_file
 from kit.plain_text import quoted, suggestion
 from kit.school.game.player_progress import CODE_ERRORS, bare_code
@@ -25,7 +27,6 @@ from kit.school.game.race import DriverKind
 from kit.workspace import open_common_folder, write_atomically
 
 FOLDER: Final = "entries"
-DRIVERS: Final = (DriverKind.CONTROLLER, DriverKind.AGENT)
 MAX_BYTES: Final = {DriverKind.CONTROLLER: 256 << 10, DriverKind.AGENT: 4 << 20}
 """Of an entry's file; an agent's network lies in it, and a program is read as code."""
 MAX_ENTRIES: Final = 500
@@ -80,14 +81,8 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
     shipped = _shipped_code()
     found: list[Entry] = []
     for file in files:
-        name, _, kind = file.name.removesuffix(".py").partition(".")
-        drivers = [driver for driver in DRIVERS if driver.value == kind]
-        if (
-            not file.name.endswith(".py")
-            or not drivers
-            or not NAME.fullmatch(name)
-            or len(found) == MAX_ENTRIES
-        ):
+        name = file.name.removesuffix(".py")
+        if not file.name.endswith(".py") or not NAME.fullmatch(name) or len(found) == MAX_ENTRIES:
             continue
         content, user, problem = b"", -1, ""
         try:
@@ -95,17 +90,16 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
                 user = os.fstat(opened.fileno()).st_uid
                 if user != owner and sum(each.user == user for each in found) >= MAX_LISTED_OF_ONE_USER:
                     continue
-                content = opened.read(MAX_BYTES[drivers[0]] + 1)
+                content = opened.read(max(MAX_BYTES.values()) + 1)
         except OSError as error:
             problem = f"its file cannot be read ({error.strerror})"
-        is_too_large = len(content) > MAX_BYTES[drivers[0]]
+        driver, code = _driver_and_code(content)
         digest = _digest(content)
-        code = digest if is_too_large else _code_digest(content, drivers[0])
         same = [each.name for each in found if each.code == code]
         others = sum(each.user == user and not each.problem for each in found)
         if not problem:
-            if is_too_large:
-                problem = f"its file is larger than {MAX_BYTES[drivers[0]] >> 10} KiB"
+            if len(content) > MAX_BYTES[driver]:
+                problem = f"its file is larger than {MAX_BYTES[driver] >> 10} KiB"
             elif code in shipped:
                 problem = "this program comes with the kit"
             elif name.casefold() in [each.name.casefold() for each in found]:
@@ -114,8 +108,8 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
                 problem = f"it is the same program as {same[0]}"
             elif user != owner and others >= MAX_OF_ONE_USER:
                 problem = f"its user has {MAX_OF_ONE_USER} other entries"
-        found.append(Entry(name, drivers[0], file, digest, code, user == os.getuid(), user, problem))
-    return tuple(sorted(found, key=lambda each: (each.name, each.driver.value)))
+        found.append(Entry(name, driver, file, digest, code, user == os.getuid(), user, problem))
+    return tuple(sorted(found, key=lambda each: each.name))
 
 
 def record_holders(folder: Path) -> None:
@@ -151,17 +145,17 @@ def _rank(file: Path, holders: Mapping[str, int]) -> tuple[bool, int, str]:
         status = file.lstat()
     except FileNotFoundError:  # withdrawn meanwhile
         return True, 0, file.name
-    is_holder = holders.get(file.name.partition(".")[0].casefold()) == status.st_uid
+    is_holder = holders.get(file.stem.casefold()) == status.st_uid
     return not is_holder, status.st_ctime_ns, file.name
 
 
-def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
+def submit(folder: Path, name: str, program: bytes) -> Path:
     """Adds an entry, or renews one's own of that name. Returns its file. Raises LeagueError."""
     if not NAME.fullmatch(name):
         raise LeagueError(f"{quoted(name)} cannot be an entry's name: 1 to 32 letters, digits, - and _.")
+    driver, code = _driver_and_code(program)
     if len(program) > MAX_BYTES[driver]:
         raise LeagueError(f"The program is larger than {MAX_BYTES[driver] >> 10} KiB.")
-    code = _code_digest(program, driver)
     for each in read_entries(folder):
         is_taken = not each.problem and each.name.casefold() == name.casefold()
         if is_taken and (each.name != name or not each.is_mine):
@@ -173,14 +167,11 @@ def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
         raise LeagueError(
             "This program comes with the kit, and takes part in no league: copy it and make it yours."
         )
-    file = folder / FOLDER / f"{name}.{driver.value}.py"
+    file = folder / FOLDER / f"{name}.py"
     try:
         if problem := open_common_folder(file.parent):
             raise LeagueError(f"{file.parent}: {problem}.")
         write_atomically(file, program, follows_links=False)
-        for other in (file.with_name(f"{name}.{each.value}.py") for each in DRIVERS if each is not driver):
-            if _owner_of(other) == os.getuid():
-                other.unlink(missing_ok=True)
     except OSError as error:
         raise LeagueError(f"{file} cannot be written ({error.strerror}).") from None
     return file
@@ -221,22 +212,25 @@ def program_of_agent(name: str, runs: Path) -> bytes:
 
 
 @lru_cache(MAX_ENTRIES)
-def _code_digest(content: bytes, driver: DriverKind) -> str:
-    """The digest of a program's code; of an agent's file, whose code is the kit's, that of its bytes."""
-    if driver is DriverKind.AGENT:
-        return _digest(content)
+def _driver_and_code(content: bytes) -> tuple[DriverKind, str]:
+    """Who drives with a program: an agent where it is the kit's own node of one; and the digest of its code, of an agent's that of
+    what it has learned, however it is called."""
+    if len(content) > max(MAX_BYTES.values()):
+        return DriverKind.CONTROLLER, _digest(content)
+    learned = learned_constants(content.decode(errors="replace"))
+    if learned is not None:
+        facts = sorted((name, value) for name, value in learned.items() if name != TITLE)
+        return DriverKind.AGENT, _digest(repr(facts).encode())
     try:
-        return _digest(bare_code(content).encode())
+        return DriverKind.CONTROLLER, _digest(bare_code(content).encode())
     except CODE_ERRORS:
-        return _digest(content)
+        return DriverKind.CONTROLLER, _digest(content)
 
 
 @cache
 def _shipped_code() -> frozenset[str]:
     """Of the controllers that come with the kit."""
-    return frozenset(
-        _code_digest(each.file.read_bytes(), DriverKind.CONTROLLER) for each in kit_controllers()
-    )
+    return frozenset(_driver_and_code(each.file.read_bytes())[1] for each in kit_controllers())
 
 
 def _digest(content: bytes) -> str:

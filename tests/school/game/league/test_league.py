@@ -18,6 +18,7 @@ import pytest
 from kit.controllers import kit_controllers
 from kit.document.layout import lines_of
 from kit.host.sandbox.sandbox_config import Level
+from kit.learning.policies.policy_node_text import constant_names, node_text
 from kit.run.recording import Recording
 from kit.school.game.league import entries as entries_module
 from kit.school.game.league import league as league_module
@@ -129,7 +130,7 @@ def make_league(folder: Path, *, races: bool = True, tag: bool = False, **progra
     league = League.make(folder / "league", "Ours", [LEVEL.id] if races else [], [ARENA.id] if tag else [])
     league.confine(Level.LIMITED)
     for name, program in programs.items():
-        submit(league.folder, name, CONTROLLER, program)
+        submit(league.folder, name, program)
     return league
 
 
@@ -240,19 +241,19 @@ def test_a_lone_entrant_drives_nothing_and_nobody_is_champion(tmp_path: Path) ->
         levels = (*standings.programme.races, *standings.programme.tag)
         assert all(level.title in told for level in levels)
         assert "kit league submit" in told
-        submit(league.folder, "laser", CONTROLLER, LASER)
+        submit(league.folder, "laser", LASER)
 
 
 def test_who_withdraws_takes_the_matches_along_and_a_new_program_drives_anew(driven: League) -> None:
     league = driven
-    submit(league.folder, "crashes", CONTROLLER, CRASHES)
+    submit(league.folder, "crashes", CRASHES)
     assert len(run(league).matches) == 3
     withdraw(league.folder, "crashes")
     standings = read_standings(league)
     assert (names(standings), len(standings.matches), standings.waiting) == (["laser", "stands"], 1, 0)
     league.remove_stale_results()
     assert len(list((league.folder / "results").iterdir())) == 2
-    submit(league.folder, "stands", CONTROLLER, GIVES_UP + b"again = True\n")
+    submit(league.folder, "stands", GIVES_UP + b"again = True\n")
     assert len(league.waiting()) == 1
     assert read_standings(league).matches == ()
     with pytest.raises(LeagueError):
@@ -311,7 +312,7 @@ def test_no_league_or_a_second_one_is_refused(tmp_path: Path) -> None:
     with pytest.raises(LeagueError):
         League(tmp_path).programme()
     with pytest.raises(LeagueError):
-        submit(tmp_path, "laser", CONTROLLER, LASER)
+        submit(tmp_path, "laser", LASER)
     make_league(tmp_path)
     with pytest.raises(LeagueError):
         make_league(tmp_path)
@@ -329,41 +330,37 @@ CLOCK_STEP_S = 0.02
 
 def copy_of_the_kits_own(league: League) -> None:
     shipped = kit_controllers()[0].file
-    shutil.copy(shipped, league.folder / "entries" / "mine.controller.py")
+    shutil.copy(shipped, league.folder / "entries" / "mine.py")
 
 
 def copy_of_the_kits_own_with_a_comment(league: League) -> None:
     shipped = kit_controllers()[0].file.read_bytes()
-    (league.folder / "entries" / "mine.controller.py").write_bytes(shipped + b"\n# all mine\n")
+    (league.folder / "entries" / "mine.py").write_bytes(shipped + b"\n# all mine\n")
 
 
 def anothers_program_in_another_layout(league: League) -> None:
     program = b'"""All mine."""\n' + LASER.replace(b"\n\n", b"\n\n\n# mine\n")
-    (league.folder / "entries" / "mine.controller.py").write_bytes(program)
+    (league.folder / "entries" / "mine.py").write_bytes(program)
 
 
 def anothers_program_again(league: League) -> None:
-    (league.folder / "entries" / "mine.controller.py").write_bytes(LASER)
+    (league.folder / "entries" / "mine.py").write_bytes(LASER)
 
 
 def anothers_program_under_an_earlier_name(league: League) -> None:
-    (league.folder / "entries" / "aaa.controller.py").write_bytes(LASER)
+    (league.folder / "entries" / "aaa.py").write_bytes(LASER)
 
 
 def link_to_anothers_program(league: League) -> None:
-    (league.folder / "entries" / "mine.controller.py").symlink_to("laser.controller.py")
-
-
-def one_name_twice(league: League) -> None:
-    (league.folder / "entries" / "laser.agent.py").write_bytes(LASER + b"number = 1\n")
+    (league.folder / "entries" / "mine.py").symlink_to("laser.py")
 
 
 def name_in_capitals(league: League) -> None:
-    (league.folder / "entries" / "LASER.controller.py").write_bytes(LASER + b"number = 1\n")
+    (league.folder / "entries" / "LASER.py").write_bytes(LASER + b"number = 1\n")
 
 
 def program_that_fills_the_disk(league: League) -> None:
-    (league.folder / "entries" / "mine.controller.py").write_bytes(b"#" * (MAX_BYTES[CONTROLLER] + 1))
+    (league.folder / "entries" / "mine.py").write_bytes(b"#" * (MAX_BYTES[CONTROLLER] + 1))
 
 
 @pytest.mark.parametrize(
@@ -375,7 +372,6 @@ def program_that_fills_the_disk(league: League) -> None:
         anothers_program_again,
         anothers_program_under_an_earlier_name,
         link_to_anothers_program,
-        one_name_twice,
         name_in_capitals,
         program_that_fills_the_disk,
     ],
@@ -398,7 +394,7 @@ def test_many_files_push_nobody_out(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(entries_module, "MAX_ENTRIES", 4)
     time.sleep(CLOCK_STEP_S)
     for number in range(10):
-        file = league.folder / "entries" / f"a{number}.controller.py"
+        file = league.folder / "entries" / f"a{number}.py"
         file.write_bytes(LASER + b"number = %d\n" % number)
         os.utime(file, (0, 0))
     entries = read_entries(league.folder)
@@ -409,11 +405,37 @@ def test_many_files_push_nobody_out(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 def test_a_link_that_another_user_has_put_there_leads_to_no_file_of_ones_own(tmp_path: Path) -> None:
     league, precious = make_league(tmp_path), tmp_path / "precious"
     precious.write_bytes(b"mine")
-    file = league.folder / "entries" / "ada.controller.py"
+    file = league.folder / "entries" / "ada.py"
     file.symlink_to(precious)
-    assert submit(league.folder, "ada", CONTROLLER, LASER) == file
+    assert submit(league.folder, "ada", LASER) == file
     assert precious.read_bytes() == b"mine"
     assert not file.is_symlink()
+
+
+def agents_node(title: str = "turn, 5,000 steps") -> bytes:
+    """The node of an agent that has learned nothing."""
+    constants = {**dict.fromkeys(constant_names(), 0), "TRAINED_ON": title}
+    return node_text("".join(f"{name} = {value!r}\n" for name, value in constants.items()), None).encode()
+
+
+def test_an_agent_is_who_has_the_kits_node_of_one(tmp_path: Path) -> None:
+    node = agents_node()
+    own = node.replace(b"    def stop(self)", b"    def stop_now(self)")
+    learned = node.replace(b"TARGETS = 0\n", b"TARGETS = open('targets').read()\n")
+    besides = node.replace(b"TARGETS = 0\n", b"TARGETS = 0\nimport laser\n")
+    assert node not in (own, learned, besides)
+    league = make_league(
+        tmp_path, agent=node, laser=LASER, own=own, learned=learned, besides=besides, mark=node + b"\nx = 1\n"
+    )
+    for name in ("laser.agent.py", "agent.controller.py"):  # a name says nothing
+        (league.folder / "entries" / name).write_bytes(LASER + b"number = 1\n")
+    drivers = {each.name: each.driver for each in league.entrants()}
+    assert drivers == {
+        "agent": DriverKind.AGENT,
+        **dict.fromkeys(("laser", "own", "learned", "besides", "mark"), CONTROLLER),
+    }
+    with pytest.raises(LeagueError, match="the same program"):
+        submit(league.folder, "mine", agents_node("mine, 1 step"))
 
 
 ANOTHER, THIRD = 60001, 60002
@@ -427,15 +449,15 @@ def enter_as(user: int, league: League, name: str, program: bytes) -> Path:
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
-@pytest.mark.parametrize("name", ["Ada.controller.py", "ada.agent.py"])
-def test_who_renews_an_entry_keeps_its_name(tmp_path: Path, name: str) -> None:
+def test_who_renews_an_entry_keeps_its_name(tmp_path: Path) -> None:
+    name = "Ada.py"
     league = make_league(tmp_path, ada=LASER, bob=GIVES_UP)
     record_holders(league.folder)
     enter_as(ANOTHER, league, name, LASER + b"number = 1\n")
     time.sleep(CLOCK_STEP_S)
-    submit(league.folder, "ada", CONTROLLER, LASER + b"better = True\n")
+    submit(league.folder, "ada", LASER + b"better = True\n")
     (ada,) = (each for each in league.entrants() if each.name.casefold() == "ada")
-    assert (ada.user, ada.file.name) == (os.getuid(), "ada.controller.py")
+    assert (ada.user, ada.file.name) == (os.getuid(), "ada.py")
     for forged in (b"[" * 9000, b'{"ada": "x"}', b'{"ada": %d}' % ANOTHER):
         (league.folder / HOLDERS).write_bytes(forged)
         assert len(league.entrants()) == 2
@@ -454,9 +476,9 @@ def test_who_came_first_with_many_files_keeps_nobody_out(
     monkeypatch.setattr(entries_module, "MAX_ENTRIES", 12)
     league = make_league(tmp_path)
     for number in range(30):
-        enter_as(ANOTHER, league, f"a{number}.controller.py", STANDS + b"number = %d\n" % number)
+        enter_as(ANOTHER, league, f"a{number}.py", STANDS + b"number = %d\n" % number)
     time.sleep(CLOCK_STEP_S)
-    enter_as(THIRD, league, "third.controller.py", LASER)
+    enter_as(THIRD, league, "third.py", LASER)
     assert Counter(each.user for each in league.entrants()) == {ANOTHER: MAX_OF_ONE_USER, THIRD: 1}
 
 
@@ -466,8 +488,8 @@ def test_one_user_has_few_entries_in_anothers_league(tmp_path: Path) -> None:
         tmp_path, **{f"mine{number}": LASER + b"number = %d\n" % number for number in range(6)}
     )
     for number in range(9):
-        enter_as(ANOTHER, league, f"a{number}.controller.py", STANDS + b"number = %d\n" % number)
-    enter_as(THIRD, league, "third.controller.py", STANDS)
+        enter_as(ANOTHER, league, f"a{number}.py", STANDS + b"number = %d\n" % number)
+    enter_as(THIRD, league, "third.py", STANDS)
     counts = Counter(each.user for each in league.entrants())
     assert counts == {os.getuid(): 6, ANOTHER: MAX_OF_ONE_USER, THIRD: 1}
 
