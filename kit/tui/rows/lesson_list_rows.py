@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+from kit.document.layout import Page, rows_of
 from kit.document.rows import TEXT_WIDTH, Row, row, text_width
 from kit.plain_text import wrap
 from kit.school.game.levels import GameLevel
 from kit.school.lessons.catalogue import LessonEntry
-from kit.tui.rows.lesson_rows import KINDS
-from kit.tui.rows.progress_marks import mark, progress_bar, stars
+from kit.tui.rows.lesson_rows import steps_table
+from kit.tui.rows.progress_marks import mark, progress_bar
 
 TITLE: Final = 40
-STEP: Final = 12
-"""Columns before a step's title."""
 HEADER: Final = f"{'':9} {'lesson':<{TITLE}}    time  steps, █ done"
 
 
@@ -41,7 +40,8 @@ def line(entry: LessonEntry, chosen: bool) -> Row:
     progress = entry.progress
     if progress is None:
         return (*head, (" cannot be read", "bad"))
-    return (*head, (f" {progress.lesson.minutes:>3} min  ", style or "dim"), (progress_bar(progress), ""))
+    minutes = f" {progress.lesson.minutes:>3} min"
+    return (*head, *row((minutes, style or "dim"), "  ", progress_bar(progress)))
 
 
 def summary(entry: LessonEntry, rows: int, width: int) -> list[Row]:
@@ -74,7 +74,7 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
     done = f"{progress.completed_count} of {len(lesson.steps)} steps done"
     opener = entry.opened_unit.opener if entry.opened_unit is not None else ""
     made = [
-        row((f"{entry.number}  {lesson.title}", "bold")),
+        *(row((each, "bold")) for each in wrap(f"{entry.number}  {lesson.title}", room)),
         row((f"{lesson.minutes} min, {done}", "dim")),
         row(),
         *(row((each, "dim")) for each in (wrap(opener, room) if opener else ())),
@@ -85,20 +85,7 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
     for outcome in lesson.outcomes:
         made += [row(each) for each in wrap(f"- {outcome}", room, "", "  ")]
     made += [row(), row(("Steps", "bold"))]
-    for step in lesson.steps:
-        is_done = progress.is_step_completed(step)
-        has_tried = step.exercise is not None and step.exercise.name in progress.best_shares
-        earned = f"  {stars(progress, step.exercise.name)}" if step.exercise and has_tried else ""
-        first, *rest = wrap(step.title, room - STEP - len(earned))
-        made.append(
-            row(
-                ("[x] " if is_done else "[ ] ", "good" if is_done else "dim"),
-                (f"{KINDS[step.kind]:<8}", "dim"),
-                first,
-                (earned, "warn"),
-            )
-        )
-        made += [row(" " * STEP, each) for each in rest]
+    made += rows_of([steps_table(progress)], Page(room))
     if levels:
         titles = ", ".join(level.title for level in levels)
         made += [row(), *(row((each, "dim")) for each in wrap(f"Opens in the game: {titles}", room))]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
+from kit.document.blocks import Table, Tone, ToneText, labelled_table
 from kit.document.rows import Row, at_both_edges, row, row_width
 from kit.school.lessons.catalogue import LessonProgress
 from kit.school.lessons.records import LessonStep, StepKind
-from kit.tui.rows.progress_marks import progress_bar
+from kit.tui.rows.progress_marks import progress_bar, stars
 
 LONGEST_BAR: Final = 12
 LEAST_GOAL: Final = 8
@@ -19,6 +20,29 @@ KINDS: Final = {
     StepKind.MODIFY: "Change",
     StepKind.MAKE: "Make",
 }
+
+
+def steps_table(progress: LessonProgress, here: LessonStep | None = None) -> Table:
+    """The steps of a lesson: which are done, their kinds and titles, and the stars of exercises that were tried. ``here``:
+    where one stands."""
+    rows = []
+    for step in progress.lesson.steps:
+        is_done, is_here = progress.is_step_completed(step), here is not None and step.number == here.number
+        mark = "[x]" if is_done else "[>]" if is_here else "[ ]"
+        earned = (
+            stars(progress, step.exercise.name)
+            if step.exercise is not None and step.exercise.name in progress.best_shares
+            else ""
+        )
+        rows.append(
+            (
+                ToneText(mark, Tone.GOOD if is_done else Tone.BOLD if is_here else Tone.DIM),
+                ToneText(KINDS[step.kind], Tone.DIM),
+                ToneText(step.title, Tone.BOLD if is_here else Tone.PLAIN),
+                *((ToneText(earned, Tone.WARN),) if progress.best_shares else ()),
+            )
+        )
+    return labelled_table(rows, is_tight=True)
 
 
 def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:

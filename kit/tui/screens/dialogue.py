@@ -13,14 +13,14 @@ from textual.containers import Horizontal, Vertical
 from textual.geometry import Size
 
 from kit.dialogue.actions import ScreenActions
-from kit.dialogue.dialogue import Dialogue, Panel, Turn
+from kit.dialogue.dialogue import Dialogue, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, StartTyping, Tell, Work
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, fitted, row, text_width, window
 from kit.tui.loop_calls import called_in_loop
 from kit.tui.rows.key_rows import footer
-from kit.tui.rows.ruled_title import ruled_title
+from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import page_screen
@@ -39,8 +39,6 @@ WIDEST_BESIDE: Final = 76
 """Columns of the panels beside it, at least and at most."""
 LEAST_BESIDE: Final = 76
 """A question keeps this many columns; where there are fewer nothing stands beside it."""
-LEAST_PANEL: Final = 5
-"""Rows of a panel that is cut, at least."""
 LEAST_ROWS_IN_MIDDLE: Final = 24
 """A screen with no more rows shows the question at its top."""
 ROOMY_ROWS: Final = 36
@@ -439,26 +437,6 @@ def scene_of_place(name: str) -> Scene:
     from kit.tui.screens.level_pictures import first_scene
 
     return first_scene(find_scenario(name, None))
-
-
-def panel_rows(panels: Sequence[Panel], width: int, room: int) -> list[Row]:
-    """The panels below each other, each with its title on a rule; what does not fit in ``room`` rows is left out, the last
-    panel that fits in part is cut.
-
-    >>> from kit.document.blocks import Text
-    >>> from kit.document.rows import row_text
-    >>> panels = [Panel("one", (Text("first"),)), Panel("two", (Text("second"),))]
-    >>> [row_text(each) for each in panel_rows(panels, 12, 5)]
-    ['', '── one ─────', 'first']
-    """
-    made: list[Row] = []
-    for panel in panels:
-        rows = [row(), ruled_title(panel.title, width), *rows_of(panel.blocks, Page(width))]
-        left = room - len(made)
-        if len(rows) > left and left < LEAST_PANEL:
-            break
-        made += rows[:left]
-    return made
 
 
 def centred(

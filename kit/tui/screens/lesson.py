@@ -6,13 +6,14 @@ import os
 import time
 from asyncio import to_thread
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from textual.app import ComposeResult
 from textual.containers import Container
 
-from kit.dialogue.dialogue import Dialogue
+from kit.dialogue.dialogue import Dialogue, Panel
 from kit.dialogue.effects import Remark
 from kit.document.blocks import Block, Text, Tone
 from kit.document.layout import Page, place, rows_of
@@ -22,6 +23,7 @@ from kit.run.scenario import find_scenario
 from kit.school.lessons.aside import has_easy_editor, plain_lines
 from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.school.lessons.exercise_work import ExerciseAttempt
+from kit.school.lessons.glossary import lesson_words
 from kit.school.lessons.lesson_dialogue import Drive, Edit, EditHere, LessonDialogue, Replay, RunCommand
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import LearningScene, LessonStep
@@ -45,6 +47,7 @@ from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.run.recording import Recording
@@ -222,8 +225,10 @@ class LessonScreen(DialogueScreen, DriveScreen):
         question = [row(), *self._placed_rows(asked)] if asked else []
         shown = () if hides_work else tuple(drawn or step.picture.splitlines())
         room = self.room.height - 3 - len(file) - len(status)
-        if is_roomy and self._said_row + len(question) + answer + len(shown) <= room:
+        most_words = self._said_row + answer
+        if is_roomy and most_words + len(question) + len(shown) <= room:
             # What is said to the answer stands below the question, and neither moves.
+            most_words += len(question)
             words, question = [*words[: self._said_row], *question, *words[self._said_row :]], []
         has_work = work is not None and not work.by_hand and (is_roomy or not self._is_editing)
         lines = work.edited_lines() if work is not None and has_work else ()
@@ -235,15 +240,28 @@ class LessonScreen(DialogueScreen, DriveScreen):
             # Not all at once, where there is little room.
             moves_rows=self._playback_rows,
             first_words=max(self._said_row, answer, len(words) - self._said_row),
-            most_words=self._said_row + answer,
+            most_words=most_words,
             words_width=self._width,
             scrolls_with="Esc, down" if self._is_writing else "PgDn" if dialogue.is_driving else "down",
             file=self._numbered(lines) if lines else (),
             file_title=work.edited_file.name if work is not None and has_work else "",
             file_line=max(work.error_line, work.changed_line) - 1 if work is not None and has_work else 0,
             log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
+            panels=self._panels(),
+            page_width=width,
         )
         self._page.show(content, room - self._editor_rows(room), layout)
+
+    def _panels(self) -> list[Panel]:
+        """What a large screen has besides: the lesson's steps, and the words that it introduces."""
+        if self._is_editing or PageLayout.of(*self.room, is_wide=True) is not PageLayout.ROOMY:
+            return []
+        progress = self.dialogue.session.lesson_progress
+        lesson, here = progress.lesson, None if self.dialogue.has_ended else self.dialogue.step
+        panels = [Panel("steps", (lesson_rows.steps_table(progress, here),))]
+        with suppress(WorldError, FileNotFoundError):  # it is told where the glossary is opened
+            panels += [Panel("words", words)] if (words := lesson_words(lesson.name)) else []
+        return panels
 
     def _numbered(self, lines: Sequence[str]) -> list[Row]:
         """The student's file in colours, with the numbers of its lines."""

@@ -11,7 +11,9 @@ from textual.app import ComposeResult
 from textual.containers import Container
 from textual.widget import Widget
 
-from kit.document.rows import Row, fitted, lines_shown, row
+from kit.dialogue.dialogue import Panel
+from kit.document.rows import MARGIN, TEXT_WIDTH, Row, fitted, lines_shown, row, row_width
+from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import TextRows
@@ -32,6 +34,8 @@ LEAST_BESIDE: Final = 110
 
 ROOMY_SIZE: Final = (120, 30)
 """Columns and rows from which on the scene, the file and its log stand beside the words, all at once."""
+LEAST_ASIDE: Final = 40
+"""Columns of the panels beside the words, at least."""
 COLUMNS_WIDTH: Final = 180
 """Columns from which on the file has a column of its own."""
 MOST_LOG: Final = 8
@@ -93,6 +97,10 @@ class LessonContent:
     """The line of it to look at first, counted from 0."""
     log: Sequence[Row] = ()
     """What the student's program printed."""
+    panels: Sequence[Panel] = ()
+    """What a roomy page has where the words leave room: below them, or beside them where nothing else is."""
+    page_width: int = 0
+    """Columns of the page."""
 
 
 class LessonPage(Container):
@@ -104,9 +112,13 @@ class LessonPage(Container):
     LessonPage #picture { height: auto; }
     LessonPage #words { height: 1fr; }
     LessonPage #ask { height: auto; }
-    LessonPage #right { height: 1fr; layout: vertical; }
+    LessonPage #right { width: 1fr; height: 1fr; layout: vertical; }
     LessonPage #work { display: none; }
     LessonPage #log { display: none; height: auto; }
+    LessonPage #below, LessonPage #aside { display: none; width: 1fr; }
+    LessonPage #told { height: 1fr; layout: horizontal; }
+    LessonPage.-aside #aside { display: block; height: 1fr; }
+    LessonPage.-panels #below { display: block; }
     LessonPage.-beside, LessonPage.-roomy { layout: horizontal; }
     LessonPage.-beside #left, LessonPage.-roomy #left { width: 1fr; height: 1fr; }
     LessonPage.-beside #stage, LessonPage.-roomy #stage { height: 1fr; }
@@ -123,7 +135,9 @@ class LessonPage(Container):
     def __init__(self, *scenes: LessonSceneView | PlaybackSceneView) -> None:
         super().__init__()
         self._scenes = scenes
-        self._texts = {name: TextRows(id=name) for name in ("picture", "log", "work", "words", "ask")}
+        self._texts = {
+            name: TextRows(id=name) for name in ("picture", "log", "work", "words", "ask", "below", "aside")
+        }
         """Made at once: the screen may be given its size, and fill them, before they are mounted."""
         self._content = LessonContent(())
         self._top = 0
@@ -139,9 +153,12 @@ class LessonPage(Container):
                 yield self._texts["picture"]
                 yield self._texts["log"]
             yield self._texts["work"]
-        with Container(id="right"):
-            yield self._texts["words"]
-            yield self._texts["ask"]
+        with Container(id="told"):
+            with Container(id="right"):
+                yield self._texts["words"]
+                yield self._texts["ask"]
+                yield self._texts["below"]
+            yield self._texts["aside"]
 
     def show(self, content: LessonContent, room: int, layout: PageLayout) -> None:
         """``room``: rows there are for all of it."""
@@ -158,7 +175,7 @@ class LessonPage(Container):
         self.set_class(is_beside and is_roomy, "-roomy")
         self.set_class(has_work, "-work")
         self.set_class(content.moves is None, "-still")
-        self.query_one("#right").styles.width = content.words_width if is_beside else None
+        self.query_one("#told").styles.width = content.words_width if is_beside else None
         # Where nothing moves the file has all columns beside the words.
         self.set_class(self.size.width >= COLUMNS_WIDTH and content.moves is not None, "-columns")
         self._rows("picture").show_all(picture)
@@ -181,8 +198,30 @@ class LessonPage(Container):
         kept = max(content.most_words, len(content.words))
         self._set_height(self._rows("words"), min(kept, self._room) if content.asked else "1fr")
         self._show_words()
+        self._show_aside(0 if is_beside or is_below else room - used)
+        self._show_below(self._room - kept if is_beside and is_roomy else 0)
         if has_work:
             self.call_after_refresh(self._show_work, content)  # then it has the height that it will have
+
+    def _show_aside(self, room: int) -> None:
+        """Panels beside the words and what is asked, where nothing else is. ``room``: rows that both have."""
+        content = self._content
+        told = [row_width(each) for each in (*content.words, *content.asked)]
+        column = MARGIN + max(min(content.words_width - MARGIN, TEXT_WIDTH + MARGIN), *told)
+        columns = min(content.page_width - column - MARGIN, TEXT_WIDTH)
+        rows = panel_rows(content.panels, columns, room) if columns >= LEAST_ASIDE else []
+        self.set_class(bool(rows), "-aside")
+        self.query_one("#right").styles.width = column if rows else None
+        self._rows("aside").show(rows)
+
+    def _show_below(self, room: int) -> None:
+        """Panels below the words and what is asked, at the bottom of the page. ``room``: rows that are kept free of words."""
+        content = self._content
+        rows = panel_rows(content.panels, content.words_width - 2 * MARGIN, room - 1)
+        self.set_class(bool(rows), "-panels")
+        if rows:
+            blank = [row()] * (room - len(rows) if content.asked else 0)
+            self._rows("below").show_all([*blank, *(row(" " * MARGIN, *each) for each in rows)])
 
     def _show_work(self, content: LessonContent) -> None:
         """The student's file, around the line to look at, and the end of what the program printed."""

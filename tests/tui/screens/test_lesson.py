@@ -17,6 +17,7 @@ from kit.run.view import View
 from kit.school.lessons import aside, checking
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import read_lesson
+from kit.school.lessons.records import StepKind
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.rows import lesson_rows
 from kit.tui.screens.lesson import LessonScreen
@@ -500,6 +501,56 @@ def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size
     stage(student.screen, scene, size=size)
     stage(student.screen, below)
     stage(student.screen, small, size=(80, 14))
+
+
+def steps_row(pilot: Pilot[None]) -> int:
+    """The row in which the list of steps begins; 0 without one."""
+    return next((number for number, line in enumerate(rows(pilot)) if "── steps ─" in line), 0)
+
+
+@pytest.mark.long
+def test_a_large_terminal_lists_the_steps_which_stay_where_they_are(student: Student) -> None:
+    student.progress.add(EventKind.STEP, "01-colours/2")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "waiting for your prediction")
+        await seen(pilot, "▲")
+        lines, at = rows(pilot), steps_row(pilot)
+        assert at
+        steps = read_lesson(student.lesson).steps
+        for step, line in zip(steps, lines[at + 1 :], strict=False):
+            mark = {1: "[>]", 2: "[x]"}.get(step.number, "[ ]")
+            assert mark in line
+            assert step.title in line
+        await pilot.press("2")
+        await seen(pilot, "finished")
+        await seen(pilot, "Only a wall makes it turn.")
+        assert steps_row(pilot) == at, "the answer has its place above"
+
+    async def small(pilot: Pilot[None]) -> None:
+        await seen(pilot, "step 1 of")
+        assert not steps_row(pilot)
+
+    stage(student.screen, scene, size=(200, 50))
+    stage(student.screen, small)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)], ids=str)
+def test_a_step_to_read_has_the_steps_beside_its_words(student: Student, size: tuple[int, int]) -> None:
+    steps = read_lesson(student.lesson).steps
+    read = next(each for each in steps if each.kind is StepKind.EXPLAIN)
+    student.goes_to(read.number)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, read.title)
+        lines, at = rows(pilot), steps_row(pilot)
+        words = next(line for line in lines[2:] if line.strip())
+        assert at <= 4, words
+        assert words[:20].strip(), "the words begin at the left"
+        assert all(len(line) <= size[0] for line in lines)
+
+    stage(student.screen, scene, size=size)
 
 
 @pytest.mark.long
