@@ -206,15 +206,15 @@ def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> lis
         if (judged := judges[user].judge(_standing_file(folder, user, level.id, driver), level, driver))
         is not None
     ]
-    lengths: dict[tuple[str, DriverKind], set[int]] = {}
+    lengths: dict[str, set[int]] = {}
     for entry in entries:
-        lengths.setdefault((entry.level, entry.driver), set()).update(map(len, entry.tracks))
+        lengths.setdefault(entry.level, set()).update(map(len, entry.tracks))
     former = [
         _make_entry(names.get(user, LEFT), user, level, driver, *judged)
         for user in users
         for level in read
         for driver in DriverKind
-        if (wanted := lengths.get((level.id, driver)))
+        if (wanted := lengths.get(level.id))
         for file in _former_files(_drive_file(folder, user, level.id, driver))
         if (judged := judges[user].judge(file, level, driver, wanted)) is not None
     ]
@@ -339,8 +339,9 @@ def _is_as_long(ticks: Iterable[int], lengths: Collection[int]) -> bool:
 def _without_copies(
     entries: Sequence[LeaderboardEntry], former: Sequence[LeaderboardEntry]
 ) -> list[LeaderboardEntry]:
-    """Leaves out drives by hand that another user had before, however much sooner or later: no two hands drive the same. Two programs may
-    well be equal, so theirs are kept, and told whose they are. The system keeps the time at which a file was last changed, so
+    """Leaves out drives by hand that another user had before, by whatever driver and however much sooner or later, or whose user has a
+    program or an agent that drives the same: no hand does. Two programs may well be equal, so theirs are kept, and told whose they
+    are, also where one is called an agent. The system keeps the time at which a file was last changed, so
     that no user can set it back. ``former``: every drive that was ever put on the board, also by those who have left it."""
     earliest = sorted([*entries, *former], key=lambda entry: (entry.since_ns, entry.user))
     since: dict[tuple[int, str, DriverKind, float], int] = {}
@@ -353,9 +354,12 @@ def _without_copies(
             (
                 other
                 for other in earliest
-                if (other.since_ns, other.user) < (own_since, each.user)
-                and other.user != each.user
-                and (other.level, other.driver) == (each.level, each.driver)
+                if other.level == each.level
+                and (
+                    (other.since_ns, other.user) < (own_since, each.user)
+                    if other.user != each.user
+                    else other.driver is not each.driver is DriverKind.KEYS
+                )
                 and is_same_way(each.way, other.way)
             ),
             None,

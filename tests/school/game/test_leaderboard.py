@@ -438,6 +438,24 @@ def test_a_copied_drive_of_a_program_is_told_and_does_not_count(tmp_path: Path) 
     assert "as Ada before" in "\n".join(lines_of([leaderboard_times(entries)]))
     assert [each.name for each in standings(entries)] == ["Ada"]
 
+    shutil.move(board / f"7.{FIRST.id}.controller.npz", board / f"7.{FIRST.id}.agent.npz")
+    entries = read_entries(board, [FIRST])
+    assert [(each.user, each.copy_of) for each in entries] == [(OWN, ""), (7, "Ada")], "called an agent"
+
+
+@pytest.mark.usefixtures("of_many_users")
+@pytest.mark.parametrize("user", [OWN, 7])
+def test_a_drive_of_a_program_is_none_by_hand(tmp_path: Path, user: int) -> None:
+    drives = race_from_all_starts(FIRST, find_controller(str(LASER_PROGRAM)))
+    board = join(tmp_path / "board", *(recording for _, recording in drives), driver=CONTROLLER)
+    (board / "7.json").write_text('{"name": "Bob"}')
+    (own_start,) = (recording for _, recording in drives if recording.seed == OWN_SEED)
+    share_drives([own_start], board / f"{user}.{FIRST.id}.keys.npz")
+    assert [(each.user, each.driver) for each in read_entries(board, [FIRST])] == [(OWN, CONTROLLER)]
+    for file in board.glob(f"{OWN}.{FIRST.id}.controller.*"):
+        file.unlink()
+    assert [each.user for each in read_entries(board, [FIRST])] == [user], "else it would stand"
+
 
 @pytest.mark.usefixtures("of_many_users")
 def test_two_of_one_name_are_told_apart(tmp_path: Path) -> None:
