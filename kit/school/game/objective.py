@@ -112,6 +112,12 @@ class Objective:
         return "  ".join(filter(None, (counted, abreast)))
 
     @property
+    def shortfall(self) -> str:
+        """How much of it is achieved, and how far the next target is, in words."""
+        distance = "" if self.target_m is None else f"{self.target_m:.2f} m from the next target"
+        return ", ".join(filter(None, (self.progress.replace("  ", ", "), distance)))
+
+    @property
     def is_apart(self) -> bool:
         """Whether two robots have been side by side for less of the drive than the level asks."""
         return self.share_abreast < self._least_abreast

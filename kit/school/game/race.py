@@ -112,6 +112,8 @@ class RaceFinish:
     """Whether a robot stood still between its first move and the end."""
     is_apart: bool = False
     """Whether two robots were side by side for less of it than the level asks."""
+    shortfall: str = ""
+    """How much of the goal was achieved, and how far its next target was, where it was not reached; in words."""
 
     @property
     def is_flawed(self) -> bool:
@@ -161,6 +163,7 @@ class RaceReferee(Observer):
             splits=self.objective.splits,
             has_stopped=self._has_stopped,
             is_apart=self.objective.is_apart,
+            shortfall=self.objective.shortfall if reached_s is None else "",
         )
 
     @property

@@ -36,7 +36,8 @@ def finish_sentence(finish: RaceFinish) -> str:
         apart = ", and the pair was apart for too long" if finish.is_apart else ""
         bumps = counted(finish.collisions, "bump")
         return f"The goal was reached after {finish.seconds:.2f} s, with {bumps}{apart}."
-    return f"The goal was not reached in {finish.seconds:.0f} s."
+    shortfall = f": {finish.shortfall}" if finish.shortfall else ""
+    return f"The goal was not reached in {finish.seconds:.0f} s{shortfall}."
 
 
 def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord, width: int) -> list[Row]:
@@ -52,7 +53,10 @@ def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord, width: int
     if not level.has_medals:
         return [row(("   your best time so far", "good"))] if record.is_best else []
     if not finish.reached:
-        return [row((f"   {NO_STAR} ", "dim"), ("no medal yet", "dim"))]
+        return [
+            row((f"   {NO_STAR} ", "dim"), ("no medal yet", "dim")),
+            *(row(" " * MARK, each) for each in wrap(f"skill: {level.skill}", width - MARK) if level.skill),
+        ]
     rows = [medal_row(record.medal, is_new=record.medal > record.previous_medal)]
     for rule in record.rules:
         new = " (new)" if rule in record.new_rules else ""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual.binding import BindingType
@@ -34,7 +35,7 @@ from kit.school.game.ghosts import (
 )
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import medal_of
-from kit.school.game.player_progress import BY_HAND, DriverFacts, level_progress
+from kit.school.game.player_progress import BY_HAND, DriverFacts, facts_of_program, level_progress
 from kit.school.game.race import (
     DriverKind,
     RaceFinish,
@@ -50,7 +51,7 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
-from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.level_card_rows import level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog
@@ -111,8 +112,8 @@ class LevelDrive(WatchScreen):
     shows_program = False
     screen_actions = ScreenActions(
         "level",
-        ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
-        ("ghosts", "agent_view", "laser_map", "share", "speed", "drive_mode", "zoom", *VIEW_IDS, "quit"),
+        ("drive_keys", "stop_robot", "restart", "pause", "speed", "help", "back"),
+        ("ghosts", "agent_view", "laser_map", "share", "drive_mode", "zoom", *VIEW_IDS, "quit"),
         drives=True,
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
@@ -130,7 +131,8 @@ class LevelDrive(WatchScreen):
         facts: DriverFacts = BY_HAND,
         agent: tuple[str, Policy] | None = None,
     ) -> None:
-        """``program``: what drives; None: the keys do. ``agent``: name and policy, where the program is an agent."""
+        """``program``: what drives; None: the keys do. ``facts``, ``agent``: what is known of an agent, and its name and policy,
+        where the program is one."""
         super().__init__(
             theme, level.title, seed=OWN_SEED, socket_dir=sockets_folder(workspace.folder), records=True
         )
@@ -186,6 +188,12 @@ class LevelDrive(WatchScreen):
         is_by_hand = self._race_program is None
         return is_by_hand and self.has_started and not self._is_over and self._cut_short is None
 
+    @property
+    def _own_program(self) -> Path | None:
+        """The player's own program, where one drives."""
+        is_own = self._driver is DriverKind.CONTROLLER and not self._facts.is_shipped
+        return self._race_program.file if self._race_program is not None and is_own else None
+
     def open_world(self) -> None:
         self._referee, self._is_over, self._result_row = None, False, ()
         self._recorder, self._behind, self._notice, self._has_warned = None, None, None, False
@@ -208,6 +216,10 @@ class LevelDrive(WatchScreen):
     def _open_race(self) -> Session:
         """Opens the race in the helper thread, after the program has started and before the first tick."""
         assert self._race_program is not None  # else the keys drive
+        if self._driver is DriverKind.CONTROLLER:
+            self._facts = facts_of_program(
+                self._race_program.file
+            )  # it may have been edited since the last drive
         session, self._referee, self._recorder = open_race(self._level, self._scenario, self._race_program)
         return session
 
@@ -448,6 +460,7 @@ class LevelDrive(WatchScreen):
             reference,
             splits,
             self._finishes,
+            self._own_program,
         )
         self.app.push_screen(DriveResultScreen(self._theme, result, self._workspace), self._do_choice)
 
@@ -461,13 +474,9 @@ class LevelDrive(WatchScreen):
 
     # Keys
 
-    def _show_keys(self) -> None:
-        """Where a program drives, the keys that drive are left out."""
-        if self._race_program is None:
-            super()._show_keys()
-            return
-        without = ("drive_keys", "stop_robot", "quit")
-        self._rows("keys").show([footer(self.screen_actions, self.size.width or 80, without=without)])
+    @property
+    def _unavailable_actions(self) -> tuple[str, ...]:
+        return ("speed",) if self._race_program is None else ("drive_keys", "stop_robot")
 
     def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""

@@ -6,7 +6,9 @@ import math
 import os
 from asyncio import to_thread
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
@@ -38,9 +40,10 @@ from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.rows.medal_rows import medal_drawing
-from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, scene_of
+from kit.tui.suspend import edit_aside
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView
@@ -91,12 +94,16 @@ class DriveResult:
     splits: Sequence[Split]
     finishes: Sequence[RaceFinish] = ()
     """Of a program's drives from all starts; the middle one counts."""
+    program: Path | None = None
+    """The player's own program that drove; None: something else did."""
 
 
 class DriveResultScreen(ModalScreen[Wish]):
     """What a drive earned, beside its map. A driving key that is still held does not close it."""
 
-    screen_actions = ScreenActions("level result", ("next", "restart", "replay", "share", "back"))
+    screen_actions = ScreenActions(
+        "level result", ("next", "restart", "edit_file", "replay", "share", "help", "back")
+    )
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     DriveResultScreen {{ layout: vertical; layers: text map; }}
@@ -250,12 +257,16 @@ class DriveResultScreen(ModalScreen[Wish]):
         """Rows for what appears."""
         return self.app.size.height - len(self._fixed) - len(self._medal) - ROWS_AROUND
 
-    def _show(self) -> None:
-        revealed = self._revealed
-        without = [
+    @property
+    def _unavailable(self) -> list[str]:
+        return [
             *([] if self._result.finish.reached else ["next"]),
-            *(["replay"] if self._shown < len(revealed) else []),
+            *([] if self._result.program is not None else ["edit_file"]),
+            *(["replay"] if self._shown < len(self._revealed) else []),
         ]
+
+    def _show(self) -> None:
+        revealed, without = self._revealed, self._unavailable
         keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         hidden = [row()] * max(0, len(revealed) - self._shown)  # what is below keeps its place
         rows = [*self._fixed, *self._medal, *revealed[: self._shown], *hidden, self._note]
@@ -275,6 +286,21 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     def action_restart(self) -> None:
         self.dismiss("restart")
+
+    def action_edit_file(self) -> None:
+        """Opens the program that drove, where it failed if it did; once it is another one, it drives again."""
+        program, failure = self._result.program, self._result.finish.failure
+        if program is None:
+            return
+        before = _content(program)
+        line = failure.line if failure is not None and failure.file == program.name else None
+        if problem := edit_aside(self.app, program, line or 1, self._theme.terminal):
+            self.app.push_screen(MessageDialog("No editor opened", problem))
+        elif _content(program) != before:
+            self.dismiss("restart")
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("The end of a drive", self.screen_actions, without=self._unavailable))
 
     def action_back(self) -> None:
         self.dismiss("back")
@@ -305,6 +331,13 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._show()
         shown = [*(row(each) for each in rows), row(), *map(row, said.splitlines())]
         self.app.push_screen(MessageDialog("A card to share", shown))
+
+
+def _content(file: Path) -> bytes:
+    """Empty where it cannot be read."""
+    with suppress(OSError):
+        return file.read_bytes()
+    return b""
 
 
 def scene_of_drive(result: DriveResult) -> Scene:

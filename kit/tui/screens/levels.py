@@ -35,7 +35,6 @@ from kit.school.game.player_progress import (
     LevelProgress,
     belt_of,
     completed_lessons,
-    facts_of_program,
     level_progress,
 )
 from kit.school.game.race import DriverKind, agent_controller
@@ -493,8 +492,7 @@ class LevelsScreen(RowsScreen[None]):
             Picker(f"Who drives? Yours are in {self._workspace.controllers}", choices)
         )
         if picked is not None:
-            facts = await to_thread(facts_of_program, files[picked].file)
-            await self._drive(self.chosen.level, DriverKind.CONTROLLER, files[picked], facts)
+            await self._drive(self.chosen.level, DriverKind.CONTROLLER, files[picked])
 
     @work(exclusive=True, group="drive")
     async def action_agent(self) -> None:

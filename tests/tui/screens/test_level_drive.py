@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 import datetime
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
 
-from kit.controllers import prepare_workspace
+from kit.controllers import ControllerFile, find_controller, prepare_workspace
 from kit.document.rows import row
+from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.school.game.daily import daily_level
 from kit.school.game.ghosts import load_reference_ghost
 from kit.school.game.levels import find_level
 from kit.school.game.medal import RUNGS
 from kit.school.game.player_progress import ExtraRule
+from kit.school.game.race import DriverKind
+from kit.school.game.starts import OWN_SEED
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
+from kit.tui.rows.drive_end_rows import finish_sentence
+from kit.tui.screens import level_result
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LevelDrive
+from kit.tui.screens.level_result import DriveResultScreen
 from kit.tui.textual_patches import FITTING_S
+from tests.school.game.measured_drivers import LASER_PROGRAM, drive, keys_drive
 from tests.tui.lesson_stage import seen, stage, text, until
 from tests.tui.screens.test_dialog import row_of, shown_cells
 
@@ -84,3 +92,82 @@ def test_a_drive_behind_a_dialog_is_fitted_to_a_terminal_that_is_resized(tmp_pat
 
     with ProgressJournal(workspace.folder) as journal:
         stage(lambda theme: LevelDrive(theme, level, [], journal, workspace), scene, size=(80, 24))
+
+
+STOPS = "raise RuntimeError('not yet')\n"
+
+
+@pytest.mark.long
+def test_a_program_that_is_edited_after_its_drive_drives_again_and_is_judged_as_it_is_then(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    level = replace(find_level("first-drive"), goal=REACH_TARGET, targets=())
+    program = workspace.controllers / "mine.py"
+    program.write_text("\n" + STOPS)
+    contents = iter([program.read_text(), LASER_PROGRAM.read_text()])
+    lines = []
+
+    def edit(app: KitApp, file: Path, line: int, terminal: object) -> str:
+        lines.append(line)
+        file.write_text(next(contents))
+        return ""
+
+    monkeypatch.setattr(level_result, "edit_aside", edit)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen), "the end")
+        stopped = pilot.app.screen
+        await seen(pilot, "not yet")
+        await pilot.press("e")
+        assert pilot.app.screen is stopped, "nothing was changed"
+        await pilot.press("e")
+        await until(pilot, lambda: pilot.app.screen is not stopped, "the drive")
+        await until(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen), "its end")
+
+    with ProgressJournal(workspace.folder) as journal:
+        driven = ControllerFile("mine", program, "")
+        stage(
+            lambda theme: LevelDrive(
+                theme, level, [], journal, workspace, driver=DriverKind.CONTROLLER, program=driven
+            ),
+            scene,
+        )
+        first, second = journal.events(EventKind.FINISH)
+    assert lines == [2, 2], "where it stopped"
+    assert (first.content["reached"], second.content["reached"]) == (False, True)
+    assert ExtraRule.CLEAN in second.content["rules"]
+    assert ExtraRule.FEW_LINES not in second.content["rules"], "they are counted anew"
+
+
+@pytest.mark.parametrize("driver", [DriverKind.KEYS, DriverKind.CONTROLLER])
+def test_the_help_of_a_drive_names_no_key_that_does_nothing(tmp_path: Path, driver: DriverKind) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    program = find_controller("circle") if driver is DriverKind.CONTROLLER else None
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "front")
+        await pilot.press("question_mark")
+        await seen(pilot, "show or hide the ghosts")
+        assert ("full speed" in text(pilot)) is (program is not None)
+        assert ("you take over" in text(pilot)) is (program is None)
+
+    with ProgressJournal(workspace.folder) as journal:
+        level = find_level("first-drive")
+        stage(
+            lambda theme: LevelDrive(theme, level, [], journal, workspace, driver=driver, program=program),
+            scene,
+        )
+
+
+def test_the_end_of_a_drive_that_does_not_arrive_says_what_was_achieved(tmp_path: Path) -> None:
+    level = find_level("first-drive")
+    finish, _ = drive(level, OWN_SEED, lambda session: None)
+    assert not finish.reached
+    distance = level.targets[0][1] - level.find_scenario().starts[0].y
+    assert finish.shortfall.startswith("0 of 2 targets, ")
+    left = float(finish.shortfall.partition(", ")[2].partition(" m")[0])
+    assert 0.8 * distance < left < distance  # from the hull
+    assert finish.shortfall in finish_sentence(finish)
+    arrived, _ = keys_drive(level)
+    assert not arrived.shortfall
