@@ -129,13 +129,16 @@ class ChallengeTask(ABC):
         return argument
 
 
-def judge_share(text: str, comparison: AnswerComparison, naive: float, best: float) -> Judgement:
-    """Judges an answer of which more is better by its share of what the best one gains on the naive one."""
-    if comparison.answer <= naive:
-        return Judgement(Medal.NONE, text, comparison)
-    share = (comparison.answer - naive) / (best - naive)
-    medal = Medal.GOLD if share >= GOLD_GAIN else Medal.SILVER if share >= SILVER_GAIN else Medal.BRONZE
-    return Judgement(medal, text, comparison)
+def judge_return(text: str, answer: float, naive: float, best: float) -> Judgement:
+    """Judges a return by its share of what the best one gains on the naive one."""
+    others = (("naive answer", naive), ("best answer", best))
+    gains = ((Medal.SILVER, SILVER_GAIN), (Medal.GOLD, GOLD_GAIN))
+    rungs = (
+        (Medal.BRONZE, math.nextafter(naive, math.inf)),
+        *((medal, naive + gain * (best - naive)) for medal, gain in gains),
+    )
+    comparison = AnswerComparison("return", answer, others, rungs, more_is_better=True)
+    return Judgement(comparison.medal, text, comparison)
 
 
 def as_comments(lines: Sequence[str]) -> str:

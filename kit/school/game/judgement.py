@@ -15,7 +15,22 @@ class AnswerComparison:
     answer: float
     others: tuple[tuple[str, float], ...]
     """Name and figure of each: the naive answer and the best one, or what earns the medals."""
+    rungs: tuple[tuple[Medal, float], ...]
+    """What each medal asks for, the lowest first."""
     more_is_better: bool = False
+
+    @property
+    def medal(self) -> Medal:
+        """What the figure earns."""
+        return max((medal for medal, figure in self.rungs if self._reaches(figure)), default=Medal.NONE)
+
+    @property
+    def next_rung(self) -> tuple[Medal, float] | None:
+        """The next medal and what it asks for; None above the last one."""
+        return next(((medal, figure) for medal, figure in self.rungs if medal > self.medal), None)
+
+    def _reaches(self, figure: float) -> bool:
+        return self.answer >= figure if self.more_is_better else self.answer <= figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +46,6 @@ class Judgement:
 
 def judge_count(unit: str, text: str, count: int, fewest: int, naive: int, near: int = 1) -> Judgement:
     """Judges an answer of which less is better and ``fewest`` is proved. ``near``: that many more still earn silver."""
-    comparison = AnswerComparison(unit, count, (("naive answer", naive), ("best answer", fewest)))
-    if count >= naive:
-        return Judgement(Medal.NONE, text, comparison)
-    medal = Medal.GOLD if count <= fewest else Medal.SILVER if count <= fewest + near else Medal.BRONZE
-    return Judgement(medal, text, comparison)
+    rungs = ((Medal.BRONZE, naive - 1), (Medal.SILVER, min(fewest + near, naive - 1)), (Medal.GOLD, fewest))
+    comparison = AnswerComparison(unit, count, (("naive answer", naive), ("best answer", fewest)), rungs)
+    return Judgement(comparison.medal, text, comparison)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
@@ -237,6 +238,9 @@ def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[R
             (judgement.medal.title, "bold"),
         )
     ]
+    if asked := next_medal(judgement):
+        is_beside = row_width(rows[0]) + len(asked) <= width
+        rows[-1:] = [row(*rows[0], asked)] if is_beside else [*rows, row("    ", asked)]
     comparison = judgement.comparison
     if comparison is not None and comparison.others[0][1] != comparison.others[-1][1]:
         (first, naive), (last, best) = comparison.others[0], comparison.others[-1]
@@ -254,12 +258,23 @@ def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[R
     return rows, _wrap_with_lead("      ", judgement.text, width, "dim")
 
 
+def next_medal(judgement: Judgement) -> str:
+    """What the next medal asks for; empty where none is left, or a figure does not decide."""
+    comparison = judgement.comparison
+    if comparison is None or comparison.medal is not judgement.medal or comparison.next_rung is None:
+        return ""
+    medal, figure = comparison.next_rung
+    hundredths = math.ceil(figure * 100.0) if comparison.more_is_better else math.floor(figure * 100.0)
+    return f"   next {medal.title} at {_number_text(hundredths / 100.0)} {comparison.unit}"
+
+
 def judged(judgement: Judgement, previous: Medal, following: str | None, beside: Sequence[Row]) -> list[Row]:
     """What an answer earned, how it stands ``beside`` others, and after a medal what comes next.
 
     ``previous``: the best medal before. ``following``: the title of the next challenge; None after the last one.
     """
-    rows = [medal_row(judgement.medal, is_new=judgement.medal > previous), *beside]
+    won = medal_row(judgement.medal, is_new=judgement.medal > previous)
+    rows = [row(*won, next_medal(judgement)), *beside]
     if following is not None and judgement.medal is not Medal.NONE:
         rows.append(row(("   next ", "dim"), following))
     return rows

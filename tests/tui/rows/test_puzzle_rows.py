@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+
 import pytest
 
-from kit.document.rows import row_text
-from kit.school.game.challenge import AnswerError, Challenge
+from kit.document.rows import row_text, row_width
+from kit.school.game.challenge import AnswerError, Challenge, judge_return
 from kit.school.game.challenge_kinds.layers import LayersTask
 from kit.school.game.challenges import all_challenges
-from kit.school.game.judgement import Judgement
+from kit.school.game.judgement import Judgement, judge_count
+from kit.school.game.medal import Medal
 from kit.tui.rows.challenge_rows import (
     GAP,
     LARGEST_SCALE,
     LEAST_TEXT,
     largest_drawing,
+    next_medal,
     puzzle_beside,
     puzzle_page,
+    worth_now,
 )
 
 PLAYED = [each for each in all_challenges() if each.task.board("") is not None]
@@ -42,6 +48,29 @@ def test_it_fits_and_is_as_large_as_there_is_room_for(challenge: Challenge) -> N
         scales.append(len(drawing) or largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)[0])
     assert scales == sorted(scales)
     assert scales[-1] == LARGEST_SCALE or scales[-1] > scales[0], "a larger screen has a larger board"
+
+
+@pytest.mark.parametrize("more_is_better", [False, True])
+@pytest.mark.parametrize("width", [36, 76])
+def test_what_the_next_medal_asks_for_stands_there_and_earns_it(width: int, more_is_better: bool) -> None:
+    judgement = (
+        judge_return("", 0.0, 10.0, 20.001) if more_is_better else judge_count("moves", "", 90, 20, 80)
+    )
+    for medal in (Medal.BRONZE, Medal.SILVER, Medal.GOLD):
+        assert judgement.comparison is not None
+        rows, _ = worth_now(judgement, width)
+        assert max(map(row_width, rows)) <= width
+        shown = " ".join(map(row_text, rows))
+        (figure,) = re.findall(rf"next {medal.title} at ([\d.]+)", shown)
+        comparison = replace(judgement.comparison, answer=float(figure))
+        assert comparison.medal is medal
+        judgement = replace(judgement, comparison=comparison, medal=medal)
+    assert "next" not in " ".join(map(row_text, worth_now(judgement, width)[0]))
+
+
+def test_a_figure_that_does_not_decide_has_no_next_medal() -> None:
+    few = judge_count("steps", "", 10, 20, 80)
+    assert "next" not in next_medal(replace(few, medal=Medal.NONE))
 
 
 @pytest.mark.parametrize("challenge", PLAYED, ids=lambda each: each.id)

@@ -29,8 +29,8 @@ from kit.school.game.board import (
     grid_rows,
     step,
 )
-from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask, judge_share
-from kit.school.game.judgement import AnswerComparison, Judgement
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask, judge_return
+from kit.school.game.judgement import Judgement
 from kit.world.yaml_section import Section
 
 PIT, START = "X", "S"
@@ -95,15 +95,12 @@ class PolicyTask(ChallengeTask):
     def judge(self, submission: AnswerSubmission) -> Judgement:
         value = value_of(self, read_policy(self, submission.answer))
         naive, best = value_of(self, naive_policy(self)), value_of(self, best_policy(self))
-        comparison = AnswerComparison(
-            "return", value, (("naive answer", naive), ("best answer", best)), more_is_better=True
-        )
         if math.isinf(value):
             raise AnswerError(
                 "From S an episode may never end, and each of its steps costs: lead every cell to G."
             )
         text = f"From S it is worth {value:.3f}; the shortest way is worth {naive:.3f}, and {best:.3f} is possible."
-        return judge_share(text, comparison, naive, best)
+        return judge_return(text, value, naive, best)
 
     @property
     def cells(self) -> tuple[Cell, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import time
 from collections.abc import Sequence
@@ -65,9 +66,10 @@ class RepairTask(ChallengeTask):
             return Judgement(Medal.NONE, f"Not repaired yet: {lost.rationale or lost.title}")
         seconds, (gold_s, silver_s) = submission.seconds, self.clock
         text = f"Repaired after {seconds:.0f} s; gold is at {gold_s:.0f} s, silver at {silver_s:.0f} s."
-        comparison = AnswerComparison("s", seconds, (("gold at", gold_s), ("silver at", silver_s)))
-        medal = Medal.GOLD if seconds <= gold_s else Medal.SILVER if seconds <= silver_s else Medal.BRONZE
-        return Judgement(medal, text, comparison)
+        rungs = ((Medal.BRONZE, math.inf), (Medal.SILVER, silver_s), (Medal.GOLD, gold_s))
+        others = (("gold at", gold_s), ("silver at", silver_s))
+        comparison = AnswerComparison("s", seconds, others, rungs)
+        return Judgement(comparison.medal, text, comparison)
 
 
 KIND = RepairTask

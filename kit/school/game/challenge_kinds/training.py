@@ -43,10 +43,15 @@ class TrainingTask(ChallengeTask):
     def learning_task(self) -> str:
         return self.trains
 
+    @property
+    def rungs(self) -> tuple[tuple[Medal, int], ...]:
+        """The steps in which a training earns each medal."""
+        shares = ((Medal.BRONZE, 1.0), (Medal.SILVER, SILVER_STEPS), (Medal.GOLD, GOLD_STEPS))
+        return tuple((medal, int(share * self.max_steps)) for medal, share in shares)
+
     def lines(self) -> list[str]:
         """What earns the medals, and the commands for it."""
-        shares = ((Medal.GOLD, GOLD_STEPS), (Medal.SILVER, SILVER_STEPS), (Medal.BRONZE, 1.0))
-        rungs = (f"{medal.title:<6} at most {share * self.max_steps:7,.0f} steps" for medal, share in shares)
+        rungs = (f"{medal.title:<6} at most {steps:7,} steps" for medal, steps in reversed(self.rungs))
         reward = " --reward FILE" if self.own_reward else ""
         return [
             *rungs,
@@ -84,13 +89,11 @@ def judge_training(task: TrainingTask, steps: int, success: float, *, has_own_re
     if task.own_reward and not has_own_reward:
         return Judgement(Medal.NONE, f"{text} The reward was the kit's: --reward FILE trains with yours.")
     others = (("budget", task.max_steps), ("gold at", int(GOLD_STEPS * task.max_steps)))
-    comparison = AnswerComparison("steps", steps, others)
+    comparison = AnswerComparison("steps", steps, others, task.rungs)
     if success < task.success or steps > task.max_steps:
         text = f"{text} {task.success:.0%} in at most {task.max_steps:,} are asked for."
         return Judgement(Medal.NONE, text, comparison)
-    share = steps / task.max_steps
-    medal = Medal.GOLD if share <= GOLD_STEPS else Medal.SILVER if share <= SILVER_STEPS else Medal.BRONZE
-    return Judgement(medal, text, comparison)
+    return Judgement(comparison.medal, text, comparison)
 
 
 KIND = TrainingTask

@@ -79,19 +79,14 @@ class TuningTask(ChallengeTask):
         learned = learn(self, tuple(read_numbers(submission.answer).values()))
         text = f"{learned.arrived} of {len(SEEDS)} seeds find a shortest way, after {learned.steps:,.0f} steps each."
         others = (("budget", self.max_steps), ("silver at", self.silver_steps), ("gold at", self.gold_steps))
-        comparison = AnswerComparison("steps", learned.steps, others)
+        steps = (self.max_steps, self.silver_steps, self.gold_steps)
+        rungs = tuple(zip((Medal.BRONZE, Medal.SILVER, Medal.GOLD), steps, strict=True))
+        comparison = AnswerComparison("steps", learned.steps, others, rungs)
         if learned.arrived < len(SEEDS) or learned.steps > self.max_steps:
             return Judgement(
                 Medal.NONE, f"{text} All in at most {self.max_steps:,} are asked for.", comparison
             )
-        medal = (
-            Medal.GOLD
-            if learned.steps <= self.gold_steps
-            else Medal.SILVER
-            if learned.steps <= self.silver_steps
-            else Medal.BRONZE
-        )
-        return Judgement(medal, text, comparison)
+        return Judgement(comparison.medal, text, comparison)
 
 
 def format_numbers(numbers: dict[str, float]) -> str:
