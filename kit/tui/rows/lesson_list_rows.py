@@ -11,10 +11,10 @@ from kit.plain_text import wrap
 from kit.school.game.levels import GameLevel
 from kit.school.lessons.catalogue import LessonEntry
 from kit.tui.rows.lesson_rows import steps_table
-from kit.tui.rows.progress_marks import mark, progress_bar
+from kit.tui.rows.progress_marks import STEP_DONE, mark, progress_bar
 
 TITLE: Final = 40
-HEADER: Final = f"{'':9} {'lesson':<{TITLE}}    time  steps, █ done"
+HEADER: Final = f"{'':9} {'lesson':<{TITLE}}    time  steps, {STEP_DONE} done"
 
 
 def lines(shelf: Sequence[LessonEntry], chosen: LessonEntry | None) -> list[tuple[LessonEntry | None, Row]]:

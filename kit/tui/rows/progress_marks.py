@@ -7,6 +7,7 @@ from typing import Final
 from kit.school.lessons.catalogue import LessonEntry, LessonProgress
 from kit.school.lessons.records import LessonStep
 
+STEP_DONE: Final = "■"
 STARS: Final = 3
 """Stars of an exercise that has all points."""
 BAR_WIDTH: Final = 20
@@ -21,13 +22,13 @@ def mark(entry: LessonEntry) -> str:
 
 
 def progress_bar(progress: LessonProgress, here: LessonStep | None = None) -> str:
-    """One character a step: full where it is done, half where one stands."""
+    """One character a step: a full square where it is done, an empty one where one stands, else a dot."""
     return "".join(
-        "█"
+        STEP_DONE
         if progress.is_step_completed(step)
-        else "▒"
+        else "□"
         if here is not None and step.number == here.number
-        else "░"
+        else "·"
         for step in progress.lesson.steps
     )
 

@@ -123,9 +123,9 @@ def test_a_lessons_title_is_whole_however_long_the_goal(lesson: Lesson) -> None:
     def heading(goal: str) -> str:
         return row_text(lesson_rows.heading(stand, replace(lesson.steps[0], goal=goal), 80)).rstrip()
 
-    assert heading("Be told").endswith("▒░░░░")
+    assert heading("Be told").endswith("□····")
     assert "Foresee what is told" in heading("Foresee what is told")
-    assert "░" not in heading("Foresee what is told")
+    assert "□" not in heading("Foresee what is told")
     assert "..." in heading("Foresee what the robot is told by others")
     assert all(title in heading("a" * count) for count in range(1, 60))
 
