@@ -131,6 +131,5 @@ def _end_text(state: SharedGameState, me: int | None) -> str:
     if state.winner is None:
         return "Nobody has won."
     left = f": {state.names[1 - state.winner] or 'the other player'} has left" if state.has_left else ""
-    if me is not None:
-        return f"You have won{left}." if state.winner == me else "The other player has won."
-    return f"{state.names[state.winner] or NOBODY} has won{left}."
+    winner = state.names[state.winner] or "The other player"
+    return f"{'You have' if state.winner == me else f'{winner} has'} won{left}."

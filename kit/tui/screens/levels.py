@@ -23,7 +23,7 @@ from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
 from kit.school.game.challenge import Challenge
 from kit.school.game.challenges import all_challenges, challenge_medals
-from kit.school.game.daily import daily_level, streak, today
+from kit.school.game.daily import DAILY_PREFIX, daily_level, streak, today
 from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts, load_unfinished
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import Medal
@@ -117,9 +117,13 @@ class LevelsScreen(RowsScreen[None]):
     """
 
     def __init__(
-        self, theme: Theme, journal: ProgressJournal, workspace: Workspace, level: GameLevel | None = None
+        self,
+        theme: Theme,
+        journal: ProgressJournal,
+        workspace: Workspace,
+        first: GameLevel | Challenge | None = None,
     ) -> None:
-        """``level``: opened at once."""
+        """``first``: opened at once, but for a challenge whose clock then begins: that is chosen."""
         super().__init__()
         self._theme = theme
         self._progress = journal
@@ -128,7 +132,7 @@ class LevelsScreen(RowsScreen[None]):
         self._challenges = all_challenges()
         self._challenge_medals: dict[str, Medal] = {}
         self._levels = all_levels()
-        self._first = level
+        self._first = first
         self._found: tuple[LevelProgress, ...] = ()
         self._known: dict[str, tuple[Ghost, ...]] = {}
         self._references = {each.id: reference_seconds(each) for each in self._levels}
@@ -142,7 +146,8 @@ class LevelsScreen(RowsScreen[None]):
         self._doing = self._doing_level = ""
         self._news = ""
         """What is new here, at the first visit."""
-        self._at = self._levels.index(level) if level in self._levels else 0
+        shown = (*self._levels, *self._challenges)
+        self._at = shown.index(first) if first in shown else 0
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -162,8 +167,10 @@ class LevelsScreen(RowsScreen[None]):
             self._choose_cut_short()
         self._load_ghosts()
         self._read_lessons()
-        if self._first is not None:
+        if isinstance(self._first, GameLevel):
             self._drive_first(self._first)
+        elif self._first is not None and self._first.task.clock is None:
+            self.call_after_refresh(self.action_open)
 
     def _choose_cut_short(self) -> None:
         """Names and chooses the level of a drive that a dropped link has ended: it goes on there."""
@@ -498,6 +505,9 @@ class LevelsScreen(RowsScreen[None]):
     async def action_agent(self) -> None:
         if not self._may_drive():
             return
+        if why_not := level_rows.not_for_agents(self.chosen.level):
+            self.app.push_screen(MessageDialog("Agents", why_not))
+            return
         runs = {run.name: run for run in await to_thread(_runs, self._workspace.runs)}
         if not runs:
             from kit.tui.screens.challenge import NO_RUNS  # of no use to the first frame
@@ -555,7 +565,11 @@ class LevelsScreen(RowsScreen[None]):
         )
         await self.app.push_screen_wait(screen)
         self._refresh_after_drive(level)
-        if screen.wish == "next" and (following := self._level_after(level)) is not None:
+        if screen.wish != "next":
+            return
+        if level.id.startswith(DAILY_PREFIX):
+            self.action_leaderboard()  # the board of the day
+        elif (following := self._level_after(level)) is not None:
             self._at = following
             self._load_ghosts()
             await self._drive(self.chosen.level, driver, program, facts, agent)

@@ -26,6 +26,8 @@ HIGHEST: Final = 22
 """Most rows of a list with its border and the field above it, on a screen that is not much higher."""
 ROWS_AROUND: Final = 3
 """Rows of these alone."""
+CHOOSING: Final = "arrows choose, Enter confirm, Esc back"
+NOTHING_FOUND: Final = "nothing has these letters, Esc back"
 COLUMNS_AROUND: Final = 7
 """Columns of the border, of the mark of the chosen line and of the scroll bar."""
 
@@ -91,7 +93,7 @@ class Picker(Dialog[str | None]):
     def compose(self) -> ComposeResult:
         with Vertical() as box:
             box.border_title = self._title
-            box.border_subtitle = "arrows choose, Enter confirm, Esc back"
+            box.border_subtitle = CHOOSING
             yield FilterInput(placeholder="type to filter", select_on_focus=False)
             yield OptionList()
 
@@ -159,6 +161,7 @@ class Picker(Dialog[str | None]):
             for number, choice in enumerate(shown)
         )
         self._shown, self._marked = shown, at
+        self.query_one(Vertical).border_subtitle = CHOOSING if shown else NOTHING_FOUND
         if not wanted:  # a filter leaves the list as high as it is, so that it does not move
             rows = sum(
                 option.prompt.plain.count("\n") + 1

@@ -39,6 +39,7 @@ from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from kit.run.view import View
+    from kit.school.game.challenge import Challenge
     from kit.school.game.levels import GameLevel
     from kit.school.lessons.records import Lesson
     from kit.school.progress import ProgressJournal
@@ -233,11 +234,12 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     async def palette_commands(self) -> list[PaletteCommand]:
         """Lines of the menu, lessons, levels and maps; each is opened in place of whatever is open above."""
+        from kit.school.game.challenges import all_challenges
         from kit.school.game.levels import all_levels
         from kit.world.catalogue import all_maps
 
         overview = await self._current_overview()
-        levels = await to_thread(all_levels)
+        levels, puzzles = await to_thread(all_levels), await to_thread(all_challenges)
         return [
             *(
                 PaletteCommand(item.title, item.about, self._opener(getattr(self, f"_open_{item.name}")))
@@ -255,6 +257,10 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             *(
                 PaletteCommand(f"Level {level.title}", "", self._opener(partial(self._open_levels, level)))
                 for level in levels
+            ),
+            *(
+                PaletteCommand(f"Puzzle {each.title}", "", self._opener(partial(self._open_levels, each)))
+                for each in puzzles
             ),
             *(
                 PaletteCommand(
@@ -341,13 +347,13 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             )
         )
 
-    async def _open_levels(self, level: GameLevel | None = None) -> None:
+    async def _open_levels(self, first: GameLevel | Challenge | None = None) -> None:
         from kit.school.progress import ProgressError
         from kit.tui.screens.levels import LevelsScreen
 
         try:
             journal = await to_thread(self._store.progress)
-            screen = LevelsScreen(self._theme, journal, self._store.workspace, level)
+            screen = LevelsScreen(self._theme, journal, self._store.workspace, first)
         except (ProgressError, FileNotFoundError) as error:
             self.app.push_screen(MessageDialog("The levels cannot be opened", str(error)))
             return

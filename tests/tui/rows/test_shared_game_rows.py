@@ -32,6 +32,7 @@ def test_a_rematch_is_offered_and_asked_for(me: int | None, before: str, after: 
     assert before in said(OVER, me)
     assert after in said(replace(OVER, asks_again=True), me)
     assert ("rematch" in said(OVER, me)) == (me == 1)
+    assert ("Ada has won" in said(OVER, me)) == (me != HOST), "by name"
 
 
 @pytest.mark.parametrize("me", [HOST, None])

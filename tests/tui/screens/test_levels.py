@@ -22,7 +22,7 @@ from kit.mapmaking.new_map import write_map
 from kit.run.recording import Recording
 from kit.school.game import ghosts, leaderboard, references
 from kit.school.game.challenges import all_challenges
-from kit.school.game.daily import daily_level, today
+from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.medal import Medal
@@ -32,6 +32,7 @@ from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.screens import level_result
+from kit.tui.screens import levels as levels_module
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_drive import LevelDrive
@@ -661,5 +662,42 @@ def test_a_race_of_a_program_is_seen_and_a_controller_of_the_kit_earns_nothing(
         await pilot.press("escape")
         await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
         assert not screen._found[1].medals
+
+    play(scene, progress, tmp_path / "desk")
+
+
+def test_an_agent_is_not_asked_for_where_none_can_be_trained(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    content = {"driver": "keys", "reached": True, "seconds": 9.0, "bumps": 0, "medal": 1}
+    for level in LEVELS:
+        progress.add(EventKind.FINISH, level.id, content)
+    untrained = next(each for each in LEVELS if each.untrained)
+    (prepare_workspace(tmp_path / "desk").runs / "mine").mkdir()
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        screen._at = LEVELS.index(untrained)
+        await pilot.press("a")
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
+        assert untrained.untrained in flat(pilot.app)
+
+    play(scene, progress, tmp_path / "desk")
+
+
+@pytest.mark.long
+def test_the_run_of_the_day_leads_to_its_board(
+    progress: ProgressJournal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(levels_module, "daily_level", lambda day: replace(ONE_WAY, id=f"{DAILY_PREFIX}{day}"))
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("d")
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        drive = pilot.app.screen
+        assert isinstance(drive, LevelDrive)
+        await wait_until_shown(pilot, lambda: drive.view is not None)
+        drive.wish = "next"
+        drive.dismiss()
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LeaderboardScreen))
 
     play(scene, progress, tmp_path / "desk")

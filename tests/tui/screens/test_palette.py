@@ -11,9 +11,11 @@ from kit.render.roles import Role
 from kit.tui.app import KitApp
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lessons import LessonsScreen
+from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
+from kit.tui.screens.puzzle import PuzzleScreen
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from tests.tui.lesson_stage import seen, text, until
@@ -37,6 +39,21 @@ def test_it_lists_lessons_levels_and_maps_and_opens_one_over_whatever_is_open(ho
         await pilot.press(*"lesson 1", "enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, LessonScreen), "the lesson")
         assert len(pilot.app.screen_stack) == 3
+
+    house.play(scene)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "opens"), [("eyes for the ward", True), ("the night convoy", False)])
+def test_it_finds_puzzles_and_opens_those_without_a_clock(house: House, name: str, opens: bool) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        await pilot.press(*f"puzzle {name}", "enter")
+        await seen(pilot, "Mount as few" if opens else "Repair convoy.launch.py")
+        await pilot.pause(0.5)
+        assert type(pilot.app.screen) is (PuzzleScreen if opens else LevelsScreen)
 
     house.play(scene)
 

@@ -8,7 +8,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.tui.screens.picker import LIST_WIDTH, Picker, PickerItem
+from kit.tui.screens.picker import LIST_WIDTH, NOTHING_FOUND, Picker, PickerItem
 from tests.tui.lesson_stage import rows, stage, text
 from tests.tui.screens.test_dialogs import LONG
 from tests.tui.screens.test_start import house as house  # the fixture
@@ -62,7 +62,10 @@ def test_keys_choose(keys: list[str], chosen: str | None) -> None:
 
 @pytest.mark.long
 def test_nothing_is_chosen_where_nothing_is_left() -> None:
-    assert pick(*"zzz", "enter")[1] is None
+    shown, chosen = pick(*"zzz", "enter")
+    assert chosen is None
+    assert NOTHING_FOUND in shown
+    assert NOTHING_FOUND not in pick(*"zzz", *["backspace"] * 3, "enter")[0]
 
 
 @pytest.mark.long
