@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from kit.document.rows import Row, fitted, row, row_text
-from kit.tui.rows.chart_rows import laser_chart, time_chart
+from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
 from kit.tui.rows.readout_rows import message_rows
 from kit.tui.rows.ruled_title import ruled_title
 
@@ -76,10 +76,7 @@ def instruments(
     ``figures``: of ``figure_rows``. ``program``: the lines of the controller's file.
     """
     width, height = size
-    rows = [*figures]
-    for chart in _charts(view, history, width) if len(rows) < height else ():
-        if len(rows) + len(chart) <= height:
-            rows += chart
+    rows = with_charts(view, history, figures, size)
     left = height - len(rows)
     if view.messages and left > 2:
         shown = view.messages[-max(1, min(len(view.messages), 8, left - 1)) :]
@@ -96,6 +93,18 @@ def instruments(
     return tuple(rows[:height])
 
 
+def with_charts(
+    view: View, history: SpeedHistory, figures: Sequence[Row], size: tuple[int, int]
+) -> list[Row]:
+    """The figures, and below them the charts for which ``size``, columns and rows, has room."""
+    width, height = size
+    rows = [*figures]
+    for chart in _charts(view, history, width) if len(rows) + CHART_ROWS < height else ():
+        if len(rows) + len(chart) <= height:
+            rows += chart
+    return rows
+
+
 def tells_messages(panel: Sequence[Row]) -> bool:
     """Whether a panel of ``instruments`` has the newest messages."""
     title = ruled_title(MESSAGES, 0)[1]
@@ -109,8 +118,8 @@ def figure_rows(title: str, figures: Sequence[Row], width: int) -> list[Row]:
 
 def _charts(view: View, history: SpeedHistory, width: int) -> Iterator[list[Row]]:
     """What the laser sees, and the speeds of the last minute."""
-    ranges = view.laser.tolist()
-    if any(map(math.isfinite, ranges)):
+    if view.nearest:  # it has a laser, whose first scan is to come or sees nothing
+        ranges = view.laser.tolist()
         title = ruled_title("laser", width, "distance to the left, ahead, to the right")
         yield [title, *laser_chart(ranges, width)]
     if history.forward_speeds:

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from kit.document.blocks import CellStyle, Column, Table, Tone, ToneText, labelled_table
 from kit.document.rows import Row, row, side_by_side
+from kit.document.tables import table_rows
 from kit.plain_text import counted, wrap
 from kit.tui.rows.ruled_title import ruled_title
 
@@ -26,8 +28,6 @@ PICTURE: Final = 28
 PICTURE_ROWS: Final = 9
 TITLE: Final = 11
 """Columns of a line's title."""
-WORD: Final = 10
-"""Columns of the first word of a line below the menu."""
 MOST_TRAININGS: Final = 3
 """Running trainings that are named."""
 
@@ -43,7 +43,7 @@ class MenuItem:
 
 
 MENU: Final = (
-    MenuItem("next_lesson", "Next lesson", ""),
+    MenuItem("next_lesson", "Next lesson", "The first step that is not done yet."),
     MenuItem("lessons", "Lessons", "In order: predict, run, explain, change, make."),
     MenuItem("drive", "Drive", "Any map and any program, your own too."),
     MenuItem("levels", "Levels", "The game: drive for medals, race programs and agents."),
@@ -84,14 +84,13 @@ def menu(
         rows += [row()]
     if overview is None or not overview.is_whole:
         return rows
-    won = won_rows(overview, width)
-    if is_wide and won:
+    rows += today_rows(overview, width, room - len(rows))
+    left = room - len(rows)
+    if is_wide:
         level = next_level_rows(overview, picture)
         won = side_by_side(level, won_rows(overview, width - PICTURE - MARGIN), PICTURE + MARGIN)
-    for part in (today_rows(overview, width, room - len(rows)), won):
-        if part and len(rows) + len(part) <= room:
-            rows += part
-    return rows
+        return [*rows, *won] if len(won) <= left else rows
+    return [*rows, *won_rows(overview, width, left)]
 
 
 def _item_row(
@@ -126,33 +125,49 @@ def today_rows(
     maze = "driven today" if overview.has_run_today else "not driven yet"
     if overview.streak:
         maze += f", {counted(overview.streak, 'day')} in a row"
-    lines = [("4  maze", maze)]
+    lines = [("4", "maze", maze)]
     if overview.next_medal:
-        lines.append(("4  medal", overview.next_medal))
+        lines.append(("4", "medal", overview.next_medal))
     if overview.due:
-        lines.append(("7  quiz", f"{counted(overview.due, 'question')} due"))
-    lines += [("5  train", f"{name} is running") for name in overview.running[:MOST_TRAININGS]]
+        lines.append(("7", "quiz", f"{counted(overview.due, 'question')} due"))
+    lines += [("5", "train", f"{name} is running") for name in overview.running[:MOST_TRAININGS]]
     if len(overview.running) > MOST_TRAININGS:
-        lines.append(("", f"and {len(overview.running) - MOST_TRAININGS} more"))
+        lines.append(("", "", f"and {len(overview.running) - MOST_TRAININGS} more"))
+    table = labelled_table(
+        (ToneText(key, Tone.DIM), ToneText(word, Tone.DIM), text) for key, word, text in lines
+    )
     rows = [row(" ", *ruled_title("today", width - 1))]
-    for word, text in lines:
-        first, *rest = wrap(text, width - MARGIN - WORD)
-        if len(rows) + 1 + len(rest) <= room:
-            rows.append(row("  ", (f"{word:<{WORD}}", "dim"), first))
-            rows += [row("  ", " " * WORD, each) for each in rest]
+    for entry in table_rows(table, width - MARGIN).entries:
+        if len(rows) + len(entry) <= room:
+            rows += [row(" " * MARGIN, *each) for each in entry]
     return rows if len(rows) > 1 else []
 
 
-def won_rows(overview: StudentOverview, width: int = PANEL_WIDTH - FRAME) -> list[Row]:
-    """How many levels of each world of the game have a medal."""
-    if not overview.won:
+def won_rows(overview: StudentOverview, width: int = PANEL_WIDTH - FRAME, room: int = WIDE_ROWS) -> list[Row]:
+    """How many levels of each world of the game have a medal. Where there is not ``room``, in rows, for all worlds, those that
+    have all medals are left out first, then the last ones."""
+    worlds, most = overview.won, room - 2
+    if len(worlds) > most:
+        worlds = tuple(each for each in worlds if each[1] < each[2])[: max(0, most)]
+    if not worlds:
         return []
-    rows = [row(), row(" ", *ruled_title("medals", width - 1))]
-    for title, won, count in overview.won:
-        figures = f"{won:>3} of {count:>2}"
-        room = width - MARGIN - len(figures)
-        rows.append(row("  ", f"{title:<{room}.{room}}", (figures, "" if won else "dim")))
-    return rows
+    total = f"{sum(won for _, won, _ in overview.won)} of {sum(count for *_, count in overview.won)}"
+    tones = [Tone.PLAIN if won else Tone.DIM for _, won, _ in worlds]
+    table = Table(
+        "medals",
+        "",
+        (Column("", CellStyle.TEXT), Column("")),
+        tuple(
+            (title, ToneText(f"{won} of {count:>2}", tone))
+            for (title, won, count), tone in zip(worlds, tones, strict=True)
+        ),
+    )
+    entries = table_rows(table, width - MARGIN).entries
+    return [
+        row(),
+        row(" ", *ruled_title("medals", width - 1, total)),
+        *(row(" " * MARGIN, *entry[0]) for entry in entries),
+    ]
 
 
 def _next_step_text(overview: StudentOverview | None) -> str:

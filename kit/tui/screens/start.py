@@ -101,6 +101,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._level_picture: tuple[str, ...] = ()
         """Rows of the next level's picture, once it is drawn."""
         self._chosen = 0
+        self._told: tuple[StudentOverview | None, int, int, int, tuple[str, ...]] | None = None
+        """What the menu tells, as it is shown."""
         self._is_reading = self._is_away = False
 
     def on_mount(self) -> None:
@@ -160,7 +162,10 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         panel = self._rows("panel")
         size = panel.size  # without its padding
         columns = WIDE_PANEL if self.has_class("-vast") else PANEL_WIDTH
-        panel.show(menu(self._overview, self._chosen, size.height, columns, self._level_picture))
+        told = self._overview, self._chosen, size.height, columns, self._level_picture
+        if told != self._told:  # not once a frame
+            self._told = told
+            panel.show(menu(*told))
 
     def on_resize(self) -> None:  # besides the base class's, which Textual calls too
         self.call_after_refresh(self._show_menu)

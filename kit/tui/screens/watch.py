@@ -25,6 +25,7 @@ from kit.tui.rows.instrument_rows import (
     instruments,
     panel_width,
     tells_messages,
+    with_charts,
 )
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
@@ -143,9 +144,9 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self._walls: FloatArray | None = None
         """Of the world for which the panel has its width."""
         self._instruments_width = 0
+        """Columns of the panel with instruments; 0 where it has none."""
         self._tells_messages = False
         """Whether the panel has the newest messages."""
-        """Columns of the panel with instruments; 0 where it has none."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -385,6 +386,9 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             figures = figure_rows(title, figures, width)
         card = self._card(panel.width - 1, panel.height - len(figures))
         if not self._instruments_width:
+            if self.has_instruments:
+                size = panel.width - 1, panel.height - len(card)
+                figures = with_charts(view, self._history, figures, size)
             return (*figures, *card)
         if view.program != self._program[0]:
             self._program = view.program, _lines_of(view.program)

@@ -8,7 +8,7 @@ import pytest
 
 from kit.document.rows import row_width
 from kit.school.game.levels import all_levels
-from kit.tui.rows.menu_rows import FRAME, MENU, PANEL_WIDTH, WIDE_PANEL, menu, today_rows
+from kit.tui.rows.menu_rows import FRAME, MENU, PANEL_WIDTH, WIDE_PANEL, menu, today_rows, won_rows
 from kit.tui.student_store import StudentOverview
 from tests.tui.lesson_stage import row_text
 
@@ -69,6 +69,20 @@ def test_today_names_what_there_is_room_for() -> None:
         assert len(fitting) <= room
         assert any("not driven yet" in each for each in fitting) is (room >= 3), room
         assert len(fitting) != 1, "no title alone"
+
+
+def test_where_not_all_worlds_have_room_those_with_medals_to_win_are_named() -> None:
+    won = tuple((f"World {number}", number % 3, 2) for number in range(9))
+    overview = StudentOverview(won=won)
+    whole = [row_text(each) for each in won_rows(overview)]
+    assert all(any(title in line for line in whole) for title, *_ in won)
+    assert any("medals" in line and "9 of 18" in line for line in whole)
+    for room in range(len(whole)):
+        rows = [row_text(each) for each in won_rows(overview, room=room)]
+        named = [title for title, *_ in won if any(title in line for line in rows)]
+        open_worlds = [title for title, count, most in won if count < most]
+        assert named == open_worlds[: max(0, room - 2)]
+        assert len(rows) <= room
 
 
 def test_a_journal_that_cannot_be_read_tells_of_no_day() -> None:

@@ -16,7 +16,14 @@ from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
 from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
-from kit.tui.rows.instrument_rows import SpeedHistory, figure_rows, instruments, panel_width, tells_messages
+from kit.tui.rows.instrument_rows import (
+    SpeedHistory,
+    figure_rows,
+    instruments,
+    panel_width,
+    tells_messages,
+    with_charts,
+)
 from kit.tui.rows.readout_rows import failure_or_messages, readout
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
@@ -165,3 +172,26 @@ def test_a_robot_that_faces_back_has_a_heading_of_180(theta: float, views: list[
     turned = replace(view, pose=view.pose._replace(theta=theta))
     line = next(line for line in texts(readout(turned, None)) if "heading" in line)
     assert line.split()[1] == "180"
+
+
+def test_charts_stand_below_the_figures_of_a_narrow_panel_and_nothing_moves_with_the_first_scan(
+    views: list[View],
+) -> None:
+    history = SpeedHistory()
+    history.add(views[-1])
+    silent = replace(
+        views[-1],
+        laser=np.full(LASER_DIRECTIONS, np.nan),
+        nearest=tuple((side, None) for side, _ in views[-1].nearest),
+    )
+    told = [
+        texts(with_charts(view, history, readout(view, "hold"), (22, 31))) for view in (silent, views[-1])
+    ]
+    for rows in told:
+        assert len(rows) <= 31
+        assert max(map(len, rows)) <= 22
+    titles = [[(number, line) for number, line in enumerate(rows) if "── " in line] for rows in told]
+    assert titles[0] == titles[1]
+    assert len(titles[0]) == 2
+    figures = readout(views[-1], "hold")
+    assert with_charts(views[-1], history, figures, (22, len(figures) + CHART_ROWS)) == list(figures)
