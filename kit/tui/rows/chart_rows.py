@@ -78,5 +78,6 @@ def _bar_rows(
             label = f"{top:4.1f}{unit:<2}"
         elif number == rows - 1 and has_zero:
             label = f"   0{unit:<2}"
+            glyphs = glyphs.replace(" ", "_")  # the axis
         lines.append(row((label, "dim"), (glyphs, "code")))
     return lines

@@ -81,8 +81,8 @@ def calendar_rows(days: Mapping[date, int], today: date, columns: int) -> list[R
             shown = (f"{sign} ", "good") if sign else ("· " if day <= today else "  ", "dim")
             parts.append(shown)
         rows.append(row(*parts))
-    legend = "  ".join(f"{sign} {least} or more" for least, sign in BUSY)
-    return [*rows, row((f"{' ' * label}{legend}", "dim"))]
+    legend = [part for least, sign in BUSY for part in ((sign, "good"), (f" {least} or more  ", "dim"))]
+    return [*rows, row(" " * label, *legend)]
 
 
 def reach_table(medals: Iterable[MedalInReach]) -> Table:

@@ -192,8 +192,6 @@ class LeagueScreen(RowsScreen[None]):
         left: list[Row] = list(head)
         if standings.places:
             left += list_rows(standings_table(standings), left_width, room, self._chosen)
-        if self._match is None and not is_wide:
-            return left
         name = self._entrants[self._chosen] if self._entrants else ""
         table = matches_table(self._matches)
         right: list[Row] = [row(), row((f"   Matches of {name}" if name else "", "bold")), row()]
@@ -207,7 +205,9 @@ class LeagueScreen(RowsScreen[None]):
             right.append(row(("   None has been driven yet.", "dim")))
         else:
             right = [row(), *self._maps]
-        return side_by_side(left, right, left_width) if is_wide else right
+        if is_wide:
+            return side_by_side(left, right, left_width)
+        return right if self._match is not None else [*left, *(right if self._entrants else ())][:height]
 
     # Keys
 

@@ -259,13 +259,15 @@ class LevelsScreen(RowsScreen[None]):
         names, *listed = level_rows.world_levels(
             levels, level.id, self._references, self._rows("map").size.width
         )
-        top, room = self._top_level, self._list_room
+        top, room, card = self._top_level, self._list_room, self._card_below()
         listed = [
             *self._world_heading([each.best_medal for each in levels]),
             names,
             *listed[top : top + room],
-            row(),
-            *self._card_below(),
+            *(
+                [row()] if len(card) <= self._rows_below_levels else []
+            ),  # else its rule parts it from the list
+            *card,
             *map_rows(levels, self._map_places(), self._pictures, level.id),
         ]
         ghosts = self._known.get(level.id, ())
@@ -288,8 +290,8 @@ class LevelsScreen(RowsScreen[None]):
         width = self._rows("map").size.width
         if self.size.width >= ABOUT_COLUMN + COLUMN or self._rows_below_levels <= len(ExtraRule):
             return []
-        rows = [*self._card_rows(width - 1), row()]
-        return rows if 1 < len(rows) <= self._rows_below_levels else []
+        rows = self._card_rows(width - 1)
+        return [*rows, row()] if 0 < len(rows) <= self._rows_below_levels else []
 
     @property
     def _rows_below_levels(self) -> int:

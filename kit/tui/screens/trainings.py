@@ -80,6 +80,9 @@ class TrainingsScreen(RowsScreen[None]):
     TrainingsScreen.-roomy #preview, TrainingsScreen.-wide #preview { display: block; }
     TrainingsScreen.-short #body { height: auto; }
     TrainingsScreen.-short.-roomy #details, TrainingsScreen.-short.-wide #details { display: block; }
+    TrainingsScreen.-short.-narrow #middle { layout: vertical; }
+    TrainingsScreen.-short.-narrow #left { height: auto; }
+    TrainingsScreen.-short.-narrow #preview { display: block; height: 1fr; padding: 1 0 0 0; }
     TrainingsScreen TaskPreview { display: none; width: 1fr; }
     TrainingsScreen.-empty #left { width: 1fr; }
     TrainingsScreen.-empty #preview { display: none; }

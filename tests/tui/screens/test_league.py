@@ -58,9 +58,10 @@ def test_from_the_standings_to_a_match_and_its_replay(tmp_path: Path, size: tupl
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "laser leads")
+        await seen(pilot, "Matches of laser")  # beside the standings or below them
         await pilot.press("enter")
-        await seen(pilot, "Matches of laser")
         await seen(pilot, "Enter replay")
+        assert "Matches of laser" in text(pilot)
         await seen(pilot, "laser: ")  # what both did, at every size
         await pilot.press("enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, MatchReplayScreen), "the replay")

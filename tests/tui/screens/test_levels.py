@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+from collections import Counter
 from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -146,6 +147,29 @@ def test_every_world_fits_and_the_shut_levels_say_what_opens_them(
 
 
 @pytest.mark.long
+@pytest.mark.long
+def test_the_stars_of_a_level_stand_below_a_list_that_is_short_enough(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        for level in LEVELS:
+            drive = {"driver": "keys", "reached": True, "seconds": 900.0, "bumps": 0}
+            progress.add(EventKind.FINISH, level.id, drive)
+        screen._read()
+        counts = Counter(each.world for each in LEVELS)
+        for number, level in enumerate(LEVELS):
+            if number and LEVELS[number - 1].world == level.world:
+                continue
+            screen._at = number
+            screen._show()
+            await wait_until_shown(pilot, lambda title=level.title: f"> {title}" in flat(pilot.app))
+            has_stars = "touched nothing" in flat(pilot.app)
+            assert has_stars is (counts[level.world] <= 4), level.world
+            assert f"{level.title} {level.story}" in flat(pilot.app)
+
+    play(scene, progress, tmp_path)
+
+
 def test_on_a_wide_screen_the_chosen_level_is_shown(progress: ProgressJournal, tmp_path: Path) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         pictures = set()

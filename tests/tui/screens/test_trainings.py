@@ -253,7 +253,7 @@ def test_what_cannot_be_trained_says_why_and_writes_nothing(folder: Path) -> Non
 
 
 @pytest.mark.long
-def test_where_there_is_room_the_chosen_run_drives_beside_the_list(folder: Path) -> None:
+def test_where_there_is_room_the_chosen_run_drives_beside_the_list_or_below_it(folder: Path) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "turn_a_to_b")  # what the caption names
         await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "a robot")
@@ -262,8 +262,12 @@ def test_where_there_is_room_the_chosen_run_drives_beside_the_list(folder: Path)
         assert "turn_a_to_b" not in text(pilot)
         await seen(pilot, "case   recent")  # below the list, what the run's own screen tells
         await pilot.resize_terminal(80, 24)
-        await until(pilot, lambda: "no policy yet" not in text(pilot), "the list alone")
-        assert "case   recent" not in text(pilot)
+        await until(pilot, lambda: "case   recent" not in text(pilot), "the preview below the list")
+        await seen(pilot, "no policy yet")
+        await pilot.press("up")
+        await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "a robot")
+        await pilot.resize_terminal(80, 14)
+        await until(pilot, lambda: not set(ROBOT) & set(text(pilot)), "the list alone")
 
     stage(lambda theme: TrainingsScreen(theme, folder), scene, size=(120, 36))
 
