@@ -69,7 +69,7 @@ class DialogueAction(Generic[D]):
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """Something that a large screen shows to the right of what is asked."""
+    """Something that a screen with room shows beside what is asked, or below it."""
 
     title: str
     blocks: tuple[Block, ...]
@@ -110,8 +110,8 @@ class Dialogue:
         return False
 
     def panels(self) -> Sequence[Panel]:
-        """What a screen shows to the right of the others where it is wide enough, as many as there is room for, the last one
-        cut where it must be; line by line they are not said."""
+        """What a screen shows to the right of the others where it is wide enough, else at its bottom, as many as there is room
+        for, the last one cut where it must be; line by line they are not said."""
         return ()
 
     @property

@@ -14,9 +14,10 @@ LEAST_PANEL: Final = 5
 """Rows of a panel that is cut, at least."""
 
 
-def panel_rows(panels: Sequence[Panel], width: int, room: int) -> list[Row]:
+def panel_rows(panels: Sequence[Panel], width: int, room: int, *, upwards: bool = False) -> list[Row]:
     """The panels below each other, each with its title on a rule; what does not fit in ``room`` rows is left out, the last
-    panel that fits in part is cut, at an empty row where it has one.
+    panel that fits in part is cut, at an empty row where it has one. ``upwards``: the first is the lowest, so that at the
+    bottom of a page it stays where it is when there is less room.
 
     >>> from kit.document.blocks import Text
     >>> from kit.document.rows import row_text
@@ -28,9 +29,11 @@ def panel_rows(panels: Sequence[Panel], width: int, room: int) -> list[Row]:
     for panel in panels:
         rows = [row(), ruled_title(panel.title, width), *rows_of(panel.blocks, Page(width))]
         left = room - len(made)
-        if len(rows) > left and left < LEAST_PANEL:
-            break
-        made += rows if len(rows) <= left else _whole_sections(rows[:left])
+        if len(rows) > left:
+            if left < LEAST_PANEL:
+                break
+            rows = _whole_sections(rows[:left])
+        made = [*rows, *made] if upwards else [*made, *rows]
     return made
 
 

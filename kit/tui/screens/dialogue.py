@@ -164,12 +164,26 @@ class DialogueScreen(RowsScreen[None]):
         self._show_field()
         body, self._top = window(whole, self._top, room - picture)
         body = centred(body, self.room.width, room, self._whole, is_at_top=self._has_panels)
+        if not self._has_panels:
+            body += self._panels_below(room - len(body))
         height = len(body) if self._field is not None and self._field.display else "1fr"
         if height != self._body_height:  # setting a style lays out and paints the whole screen
             self._body_height = self._rows("body").styles.height = height
         self._rows("body").show(body)
         if self._has_panels:
             self._rows("panels").show(panel_rows(self.dialogue.panels(), self._beside - MARGIN, room))
+
+    def _panels_below(self, left: int) -> list[Row]:
+        """The panels at the bottom of a screen that has no columns for them, and the empty rows above. ``left``: rows."""
+        if (
+            self.dialogue.entry is not None or not self.dialogue.has_panels
+        ):  # the field stands below the question
+            return []
+        indent = self._left + MARGIN
+        width = text_width(self.room.width, self._widest - 2 * MARGIN)
+        shown = panel_rows(self.dialogue.panels(), width, left - 1, upwards=True)
+        blank = [row()] * (left - len(shown)) if shown else []
+        return [*blank, *(row(" " * indent, *each) if each else each for each in shown)]
 
     def _lay_out(self, picture: int) -> None:
         """Gives the question, its picture and the panels their places, where these have changed."""

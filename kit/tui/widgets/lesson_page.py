@@ -217,7 +217,7 @@ class LessonPage(Container):
     def _show_below(self, room: int) -> None:
         """Panels below the words and what is asked, at the bottom of the page. ``room``: rows that are kept free of words."""
         content = self._content
-        rows = panel_rows(content.panels, content.words_width - 2 * MARGIN, room - 1)
+        rows = panel_rows(content.panels, content.words_width - 2 * MARGIN, room - 1, upwards=True)
         self.set_class(bool(rows), "-panels")
         if rows:
             blank = [row()] * (room - len(rows) if content.asked else 0)

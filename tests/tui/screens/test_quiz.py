@@ -206,18 +206,39 @@ def test_question_and_options_stay_where_they_are(size: tuple[int, int], progres
     play(scene, progress, size=size)
 
 
-@pytest.mark.parametrize(("width", "is_beside"), [(80, False), (120, True), (200, True)])
-def test_the_map_of_topics_stands_beside_a_question_where_there_is_room(
-    progress: ProgressJournal, width: int, is_beside: bool
+@pytest.mark.parametrize(
+    ("size", "place"),
+    [((80, 14), None), ((80, 24), "below"), ((120, 35), "beside"), ((200, 35), "beside")],
+    ids=str,
+)
+def test_the_map_of_topics_stands_beside_a_question_or_below_it_where_there_is_room(
+    progress: ProgressJournal, size: tuple[int, int], place: str | None
 ) -> None:
     async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         item = quiz(screen).item
         assert item is not None
         count = sum(each.topic is item.topic for each in BANK.items)
-        assert (f"0 of {count}" in flat(screen)) is is_beside
-        assert item.question.split()[0] in flat(screen)
-        await pilot.press(str(item.right_option + 1), "4")
-        await pilot.pause()
-        assert (f"1 of {count}" in flat(screen)) is is_beside
 
-    play(scene, progress, size=(width, 35))
+        def topic_row() -> int | None:
+            return next(
+                (number for number, line in enumerate(rows(screen)) if "what you know, by" in line), None
+            )
+
+        at, option = (
+            topic_row(),
+            next(n for n, line in enumerate(rows(screen)) if item.options[0].text[:20] in line),
+        )
+        assert (at is not None) is (place is not None)
+        if at is not None:
+            assert (at < option) is (place == "beside")
+        assert (f"0 of {count}" in flat(screen)) is (place is not None)
+        assert item.question.split()[0] in flat(screen)
+        await pilot.press(str(item.right_option + 1))
+        await pilot.pause()
+        assert topic_row() == at, "it stays where it is"
+        await pilot.press("4")
+        await pilot.pause()
+        if place == "beside":
+            assert f"1 of {count}" in flat(screen)
+
+    play(scene, progress, size=size)
