@@ -47,7 +47,6 @@ def host(
     Your process runs the world. Guests only send their key presses and receive the positions of both robots. The
     recording of a finished game is saved in your workspace, for `kit replay`.
     """
-    from kit.run.recording import save_recording
     from kit.school.game.levels import UnknownLevel, find_level
     from kit.school.game.two_players import CannotShare, SharedMode, shared_scenario
 
@@ -69,14 +68,12 @@ def host(
         )
 
     screen, code = run_screen(terminal, make_screen)
-    if (film := screen.recording()) is not None:
-        file = own_workspace.folder / "films" / f"{chosen.id}.{mode.value}.npz"
-        try:
-            file.parent.mkdir(exist_ok=True)
-            save_recording(film, file)
-        except OSError as error:
-            messages.fail(messages.describe_os_error(error))
-        click.echo(f"To replay this game: kit replay {file}")
+    try:
+        film = screen.save_film()
+    except OSError as error:
+        messages.fail(messages.describe_os_error(error))
+    if film is not None:
+        click.echo(f"To replay this game: kit replay {film}")
     raise ScreenClosed(code)
 
 

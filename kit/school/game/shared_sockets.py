@@ -118,9 +118,14 @@ def found_games(folder: Path) -> list[FoundGame]:
     return sorted(_find_games(folder), key=lambda game: game.name)
 
 
+def answering_games(folder: Path) -> list[FoundGame]:
+    """The hosts of ``found_games`` that still listen."""
+    return [game for game in found_games(folder) if _answers(game)]
+
+
 def find_game(folder: Path, name: str | None) -> FoundGame:
     """The host whose name is or begins with ``name``; without one, the only one. Raises SharedGameError."""
-    games = [game for game in found_games(folder) if _answers(game)]
+    games = answering_games(folder)
     if name is not None:
         wanted = name.replace("-", "_")  # as sockets are named
         chosen = [game for game in games if name == game.name or wanted == game.name.rpartition("-")[0]]

@@ -77,7 +77,7 @@ NOTES: Final = (
 )
 
 
-DRIVE_ACTIONS: Final = ("hand_over", "agent", "replay")
+DRIVE_ACTIONS: Final = ("hand_over", "agent", "replay", "two_players")
 """Actions that a challenge does not have."""
 STARTS: Final = (*DRIVE_ACTIONS, "open", "daily")
 """Actions that begin a drive or a replay."""
@@ -93,11 +93,12 @@ class LevelsScreen(RowsScreen[None]):
     AUTO_FOCUS = ""
     screen_actions = ScreenActions(
         "levels",
-        ("choose", "open", "hand_over", "agent", "replay", "leaderboard", "daily", "help", "back"),
+        ("choose", "open", "hand_over", "agent", "replay", "leaderboard", "daily", "two_players", "help", "back"),
         own=(
             letter("agent", "a", "agent", "let an agent that you trained drive the level"),
             letter("leaderboard", "f", "leaderboard", "show this machine's leaderboard"),
             letter("daily", "d", "daily", "drive the level of the day, the same for everyone"),
+            letter("two_players", "2", "two players", "host a race or tag on the level, or join one"),
         ),
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
@@ -487,6 +488,13 @@ class LevelsScreen(RowsScreen[None]):
         """The challenge of the day, by hand."""
         if not self._doing and self.is_active:
             await self._drive(daily_level(today()))
+
+    @work(exclusive=True, group="drive")
+    async def action_two_players(self) -> None:
+        from kit.tui.screens.two_players import play_together  # of no use to the first frame
+
+        if self._may_drive():
+            await play_together(self.app, self._theme, self.chosen.level, self._workspace)
 
     @work(exclusive=True, group="drive")
     async def action_hand_over(self) -> None:

@@ -16,7 +16,7 @@ from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import Row, row
 from kit.geometry import Pose
 from kit.render.scene import Disc, Scene, ScenePath
-from kit.run.recording import Recorder, Recording
+from kit.run.recording import Recorder, Recording, save_recording
 from kit.run.scenario import Scenario
 from kit.run.scene_bodies import scene_bodies
 from kit.run.session import Session
@@ -34,7 +34,7 @@ from kit.school.game.two_players import (
 )
 from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
-from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.shared_game_rows import HOST, players_card, shared_heading, shared_message
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LETTER_NOTES
@@ -191,9 +191,15 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         if game is not None:
             self.host.post(lambda session: game.rematch())
 
-    def recording(self) -> Recording | None:
-        """The film of the game, once the screen has been left; None where it was not over."""
-        return self._film
+    def save_film(self) -> Path | None:
+        """Writes the recording of the last game that was over into the workspace, once the screen has been left, and returns its
+        file; None where there is none. Raises OSError."""
+        if self._film is None or self._workspace is None:
+            return None
+        file = self._workspace.folder / "films" / f"{self._level.id}.{self._mode.value}.npz"
+        file.parent.mkdir(exist_ok=True)
+        save_recording(self._film, file)
+        return file
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         if self._game is not None:
@@ -300,9 +306,9 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
         assert self.state is not None  # nothing is offered before the first state
         return self._with_targets_and_ghosts(self._shapes.scene(self.state))
 
-    def _show_keys(self) -> None:
-        without = ("back",) if self.player is not None else ("back", "drive_keys", "stop_robot", "restart")
-        self._rows("keys").show([footer(self.screen_actions, self.size.width or 80, without=without)])
+    @property
+    def _unavailable_actions(self) -> tuple[str, ...]:
+        return () if self.player is not None else ("drive_keys", "stop_robot", "restart")
 
     def on_unmount(self) -> None:
         self._client.close()

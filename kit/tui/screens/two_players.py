@@ -1,0 +1,74 @@
+"""Two players from the list of levels: who hosts a game on one, or joins one that waits for a second player."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from typing import Any
+
+from textual.app import App
+
+from kit.document.rows import row
+from kit.school.game.levels import GameLevel, UnknownLevel
+from kit.school.game.shared_server import SharedGameClient
+from kit.school.game.shared_sockets import (
+    Audience,
+    SharedGameError,
+    answering_games,
+    games_folder,
+    own_user_name,
+    user_name,
+)
+from kit.school.game.two_players import CannotShare, SharedMode
+from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
+from kit.tui.theme import Theme
+from kit.workspace import Workspace
+from kit.world.problems import WorldError
+
+HOSTED = {
+    f"{mode.value} {whom}": (mode, Audience(everybody=whom == "all"))
+    for mode in (SharedMode.TAG, SharedMode.RACE)
+    for whom in ("all", "own")
+}
+"""The games that can be hosted, by the key of their line."""
+WHO_MAY_JOIN = {
+    "all": "all users of this machine may join",
+    "own": "from another terminal of your own",
+}
+
+
+async def play_together(app: App[Any], theme: Theme, level: GameLevel, workspace: Workspace) -> None:
+    """Has the user choose a game for two on a level, or one that others host, and plays it until it is left."""
+    games = {game.name: game for game in await to_thread(answering_games, games_folder())}
+    choices = [
+        PickerItem(name, f"join {name}", f"of {user_name(game.owner)}") for name, game in games.items()
+    ]
+    for key, (mode, _) in HOSTED.items():
+        choices.append(PickerItem(key, f"host {mode.value}", WHO_MAY_JOIN[key.rpartition(" ")[2]]))
+    picked = await app.push_screen_wait(Picker(f"Two players; to host: {level.title}", choices))
+    try:
+        if picked in games:
+            client = await to_thread(SharedGameClient, games[picked], own_user_name(), plays=True)
+            await app.push_screen_wait(SharedGuestScreen(theme, client, workspace))
+        elif picked is not None:
+            await _host(
+                app,
+                SharedHostScreen(
+                    theme,
+                    level,
+                    HOSTED[picked][0],
+                    own_user_name(),
+                    games_folder(),
+                    HOSTED[picked][1],
+                    workspace,
+                ),
+            )
+    except (SharedGameError, CannotShare, UnknownLevel, LookupError, WorldError, OSError) as error:
+        app.push_screen(MessageDialog("No game for two", str(error)))
+
+
+async def _host(app: App[Any], screen: SharedHostScreen) -> None:
+    await app.push_screen_wait(screen)
+    if (film := await to_thread(screen.save_film)) is not None:
+        app.push_screen(MessageDialog("The game is recorded", [row(f"To replay it: kit replay {film}")]))

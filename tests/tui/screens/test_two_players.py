@@ -1,0 +1,91 @@
+"""Games for two from the list of levels: hosting one, joining one that waits, and what is kept of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from textual.pilot import Pilot
+
+from kit.controllers import prepare_workspace
+from kit.run.recording import load_recording
+from kit.school.game.levels import find_level
+from kit.school.game.references import reference_recording
+from kit.school.game.shared_sockets import SharedGameError, answering_games, find_game
+from kit.school.game.two_players import SharedMode
+from kit.school.progress import ProgressJournal
+from kit.tui.screens import two_players
+from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.levels import LevelsScreen
+from kit.tui.screens.picker import Picker
+from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
+from kit.workspace import Workspace
+from tests.tui.lesson_stage import seen, stage, text, until
+from tests.tui.screens.test_shared_game import FakeClient
+
+
+@pytest.fixture
+def games(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(two_players, "games_folder", lambda: tmp_path / "games")
+    return tmp_path / "games"
+
+
+def on_the_levels(workspace: Workspace, scene: object) -> None:
+    with ProgressJournal(workspace.folder) as journal:
+        stage(lambda theme: LevelsScreen(theme, journal, workspace), scene)  # type: ignore[arg-type]
+
+
+async def choose(pilot: Pilot[None], line: str) -> None:
+    await seen(pilot, "First drive")
+    await pilot.press("2")
+    await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the list")
+    await pilot.press(*line, "enter")
+
+
+@pytest.mark.long
+def test_a_game_is_hosted_until_its_screen_is_left(tmp_path: Path, games: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await choose(pilot, "host race")
+        await until(pilot, lambda: isinstance(pilot.app.screen, SharedHostScreen), "the game")
+        await until(pilot, lambda: answering_games(games), "a game that can be found")
+        assert find_game(games, "first-drive")
+        screen = pilot.app.screen
+        assert isinstance(screen, SharedHostScreen)
+        screen._film = reference_recording(find_level("first-drive"))  # as if it had been played
+        await seen(pilot, "Esc back")
+        await pilot.press("escape")
+        await seen(pilot, "The game is recorded")
+        assert answering_games(games) == []
+
+    on_the_levels(workspace, scene)
+    (film,) = (workspace.folder / "films").iterdir()
+    assert load_recording(film).ticks
+
+
+def test_a_game_that_waits_is_joined(tmp_path: Path, games: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    waiting = SimpleNamespace(name="first_drive-7", owner=0)
+    monkeypatch.setattr(two_players, "answering_games", lambda folder: [waiting])
+    asked: list[object] = []
+
+    def join(game: object, name: str, *, plays: bool) -> FakeClient:
+        asked.append((game, plays))
+        if len(asked) > 1:
+            raise SharedGameError("nobody is there any more")
+        return FakeClient(SharedMode.TAG)
+
+    monkeypatch.setattr(two_players, "SharedGameClient", join)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await choose(pilot, "join")
+        await until(pilot, lambda: isinstance(pilot.app.screen, SharedGuestScreen), "the game")
+        await pilot.press("escape")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LevelsScreen), "the levels")
+        await choose(pilot, "join")
+        await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog), "why not")
+        assert "nobody is there" in text(pilot)
+
+    on_the_levels(prepare_workspace(tmp_path / "home"), scene)
+    assert asked == [(waiting, True)] * 2
