@@ -192,6 +192,7 @@ FILE_KINDS: Final = (
             "kit sweep",
             "kit fields",
             "kit game",
+            "kit league",
             "grader check",
         ),
     ),
@@ -205,7 +206,7 @@ FILE_KINDS: Final = (
         "a policy",
         lambda look: "about.npy" in look.parts or ("values.npy" in look.parts and "edges.npy" in look.parts),
         ("kit evaluate {}",),
-        ("kit compare", "kit game", "kit run", "kit play", "grader check"),
+        ("kit compare", "kit game", "kit league", "kit run", "kit play", "grader check"),
     ),
     FileKind("a bag", _is_bag, ("kit ros bag info {}", "kit ros bag play {}"), ("kit ros", "grader check")),
     FileKind(

@@ -6,11 +6,12 @@ import json
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+import click
 import pytest
 from click.testing import CliRunner
 
@@ -123,6 +124,29 @@ def test_a_requirements_file_as_the_kit_writes_it_is_one(tmp_path: Path) -> None
     kind = kind_of(file)
     assert kind is not None
     assert kind.takes("kit layers plan")
+
+
+def test_every_verb_with_an_option_for_a_program_takes_one(examples: Mapping[str, Path]) -> None:
+    program = kind_of(examples["program"])
+    assert program is not None
+    asked = [
+        line
+        for line, command in verbs("kit", kit.cli.main)
+        if any("--controller" in option.opts for option in command.params)
+    ]
+    assert "kit run" in asked
+    assert [line for line in asked if not program.takes(line)] == []
+
+
+def verbs(line: str, command: click.Command) -> Iterator[tuple[str, click.Command]]:
+    """A command and all below it, with the line that calls each."""
+    yield line, command
+    if isinstance(command, click.Group):
+        with click.Context(command) as context:
+            for name in command.list_commands(context):
+                below = command.get_command(context, name)
+                assert below is not None
+                yield from verbs(f"{line} {name}", below)
 
 
 @pytest.mark.parametrize("reader", READERS)
