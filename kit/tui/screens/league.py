@@ -20,7 +20,6 @@ from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, at_both_edges, fitted, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
-from kit.learning.training.run_folders import list_runs
 from kit.render.scene import Scene
 from kit.run.recording import Recording
 from kit.run.scenario import Scenario
@@ -32,6 +31,7 @@ from kit.school.game.league.standings import Match, Standings, match_recordings,
 from kit.school.game.league.tag_game import tag_scenario
 from kit.school.game.starts import film_scenario
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.lesson_drive import ReplayScreen
 from kit.tui.screens.level_drive import LeftError
@@ -252,10 +252,11 @@ class LeagueScreen(RowsScreen[None]):
     async def action_enter_program(self) -> None:
         """Has the user choose a program or an agent, and enters it."""
         programs = {each.name: each for each in user_controllers(self._workspace.controllers)}
-        runs = await to_thread(_agents, self._workspace.runs)
+        agents = await to_thread(agent_items, self._workspace.runs, "agent ")
         choices = [PickerItem(f"program {name}", name, each.title) for name, each in programs.items()]
-        choices += [PickerItem(f"agent {name}", name, "an agent that you trained") for name in runs]
-        picked = await self.app.push_screen_wait(Picker("Which of yours enters the league?", choices))
+        picked = await self.app.push_screen_wait(
+            Picker("Which of yours enters the league?", [*choices, *agents])
+        )
         if picked is None:
             return
         kind, _, name = picked.partition(" ")
@@ -351,8 +352,3 @@ class MatchReplayScreen(ReplayScreen):
             return scene
         marks = ghost_marks((self._ghost,), self.view.time_s)
         return replace(scene, paths=(*self._way, *scene.paths), marks=(*scene.marks, *marks))
-
-
-def _agents(runs: Path) -> list[str]:
-    """The names of all trainings."""
-    return [each.name for each in list_runs(runs)]

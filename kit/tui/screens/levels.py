@@ -47,6 +47,7 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import COLUMN, best_splits, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.rows.progress_marks import share_bar
+from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
@@ -58,7 +59,6 @@ from kit.workspace import Workspace
 
 if TYPE_CHECKING:
     from kit.learning.policies.policy import Policy
-    from kit.learning.training.runs import TrainingRun
 
 ABOUT_ROWS: Final = 6
 ABOUT_COLUMN: Final = 92
@@ -518,23 +518,24 @@ class LevelsScreen(RowsScreen[None]):
         if why_not := level_rows.not_for_agents(self.chosen.level):
             self.app.push_screen(MessageDialog("Agents", why_not))
             return
-        runs = {run.name: run for run in await to_thread(_runs, self._workspace.runs)}
-        if not runs:
+        choices = await to_thread(agent_items, self._workspace.runs)
+        if not choices:
             from kit.tui.screens.challenge import NO_RUNS  # of no use to the first frame
 
             self.app.push_screen(MessageDialog("Agents", NO_RUNS))
             return
-        choices = [PickerItem(name, name, "") for name in runs]
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
         if picked is not None:
-            await self._drive_agent(runs[picked])
+            await self._drive_agent(picked)
 
-    async def _drive_agent(self, run: TrainingRun) -> None:
+    async def _drive_agent(self, name: str) -> None:
         from kit.learning.policies.policy import PolicyError
         from kit.learning.training.run_config import RunError
+        from kit.learning.training.run_folders import find_run
 
         with ExitStack() as stack:
             try:
+                run = await to_thread(find_run, self._workspace.runs, name)
                 policy = await to_thread(run.policy)
                 program = stack.enter_context(agent_controller(policy))
                 facts = DriverFacts(training_steps=run.summary().steps)
@@ -649,9 +650,3 @@ class LevelsScreen(RowsScreen[None]):
         self._known.pop(level.id, None)
         self._read()
         self._load_ghosts()
-
-
-def _runs(folder: Path) -> list[TrainingRun]:
-    from kit.learning.training.run_folders import list_runs
-
-    return list(list_runs(folder))

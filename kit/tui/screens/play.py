@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from asyncio import to_thread
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -18,6 +17,7 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import named
 from kit.tui.input.driver import key_driver
 from kit.tui.rows.key_rows import bindings, key_row
+from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
@@ -272,7 +272,7 @@ class PlayScreen(WatchScreen):
     async def action_controllers(self) -> None:
         files = {str(each.file): each for each in (*user_controllers(self._folder), *kit_controllers())}
         choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
-        agents = await to_thread(_agent_items, self._runs)
+        agents = await to_thread(agent_items, self._runs, AGENT)
         title = f"Controllers; yours are in {self._folder}"
         chosen = await self.app.push_screen_wait(Picker(title, [*choices, *agents]))
         if chosen is None:
@@ -310,21 +310,6 @@ class PlayScreen(WatchScreen):
 def _look_again(session: Session) -> None:
     """Has a saved file read at once."""
     session.poll()
-
-
-def _agent_items(folder: Path) -> list[PickerItem]:
-    """The trainings that have left a policy. In another thread: files may be far away."""
-    from kit.learning.training.run_config import RunError
-    from kit.learning.training.run_folders import list_runs
-
-    items = []
-    for run in list_runs(folder):
-        with suppress(RunError):
-            if run.best_policy.exists() or run.newest_policy.exists():
-                items.append(
-                    PickerItem(f"{AGENT}{run.name}", run.name, f"agent: {run.config().choice.title}")
-                )
-    return items
 
 
 def _write_agent(folder: Path, name: str) -> tuple[ControllerFile, Policy]:

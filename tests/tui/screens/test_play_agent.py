@@ -13,12 +13,14 @@ from kit.learning.policies.policy import ActionSampling, Policy, task_interface
 from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.events import Evaluated, encode_event
 from kit.learning.training.run_config import RunConfig
-from kit.learning.training.run_folders import create_run
+from kit.learning.training.run_folders import create_run, find_run
 from kit.run.headless import run_episode
 from kit.run.recording import load_recording
 from kit.run.scenario import find_scenario
 from kit.school.progress import ProgressJournal
+from kit.tui.screens.agents import agent_items
 from kit.tui.screens.lesson_drive import ReplayScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.levels import LevelsScreen
@@ -43,6 +45,19 @@ def save_agent(runs: Path, name: str, spec: TaskSpec) -> None:
         ),
         run.best_policy,
     )
+
+
+def test_an_agent_to_choose_is_told_with_its_task_and_how_often_it_arrives(tmp_path: Path) -> None:
+    save_agent(tmp_path, "mine", TaskSpec("turn"))
+    create_run(tmp_path, RunConfig(TaskSpec("hallway")), "begun")  # has no policy yet
+    (item,) = agent_items(tmp_path, "agent ")
+    assert (item.key, item.name) == ("agent mine", "mine")
+    assert TaskSpec("turn").title in item.text
+    assert "%" not in item.text
+    tested = encode_event(Evaluated(100, 1.0, {"a": [9, 1, 0], "b": [3, 1, 0]}, True))
+    find_run(tmp_path, "mine").events_file.write_bytes(tested + b"\n")
+    (item,) = agent_items(tmp_path)
+    assert "75%" in item.text, "the worst case"
 
 
 @pytest.mark.long
