@@ -22,11 +22,11 @@ KINDS: Final = {
 }
 
 
-def steps_table(progress: LessonProgress, here: LessonStep | None = None) -> Table:
+def steps_table(progress: LessonProgress, here: LessonStep | None = None, first: int = 0) -> Table:
     """The steps of a lesson: which are done, their kinds and titles, and the stars of exercises that were tried. ``here``:
-    where one stands."""
+    where one stands. ``first``: the steps before this one, counted from 0, are left out."""
     rows = []
-    for step in progress.lesson.steps:
+    for step in progress.lesson.steps[first:]:
         is_done, is_here = progress.is_step_completed(step), here is not None and step.number == here.number
         mark = "[x]" if is_done else "[>]" if is_here else "[ ]"
         earned = (

@@ -38,6 +38,6 @@ def panel_rows(panels: Sequence[Panel], width: int, room: int, *, upwards: bool 
 
 
 def _whole_sections(rows: list[Row]) -> list[Row]:
-    """The rows up to the last empty one, where these are enough."""
+    """The rows up to the last empty one below the title; where there is none the last row says that more follow."""
     end = max(number for number, each in enumerate(rows) if not each)
-    return rows[:end] if end >= LEAST_PANEL else rows
+    return rows[:end] if end else [*rows[:-1], row(("...", "dim"))]

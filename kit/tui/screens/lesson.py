@@ -69,6 +69,10 @@ EDITOR_KEYS: Final = (
     ("Ctrl-X Ctrl-V", "there: cut, paste; shift with the arrows selects"),
     ("Esc", "there: back to the task; the editor stays open"),
 )
+HIGH: Final = 45
+"""Rows of a screen with room for all steps of a lesson."""
+LEAST_STEPS: Final = 5
+"""Steps that are listed at least."""
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
@@ -258,7 +262,12 @@ class LessonScreen(DialogueScreen, DriveScreen):
             return []
         progress = self.dialogue.session.lesson_progress
         lesson, here = progress.lesson, None if self.dialogue.has_ended else self.dialogue.step
-        panels = [Panel("steps", (lesson_rows.steps_table(progress, here),))]
+        first = 0
+        if (
+            here is not None and self.room.height < HIGH
+        ):  # where not all may have room, it begins shortly before that
+            first = max(0, min(here.number - 3, len(lesson.steps) - LEAST_STEPS))
+        panels = [Panel("steps", (lesson_rows.steps_table(progress, here, first),))]
         with suppress(WorldError, FileNotFoundError):  # it is told where the glossary is opened
             panels += [Panel("words", words)] if (words := lesson_words(lesson.name)) else []
         return panels
