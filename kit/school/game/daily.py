@@ -127,7 +127,7 @@ def daily_level(day: datetime.date) -> GameLevel:
     fog = _random_of_day(day).random() < 0.4
     reference = daily_drive(daily_map(day))
     return DailyLevel(
-        id=f"{DAILY_PREFIX}{day.isoformat()}",
+        id=daily_id(day),
         title=f"The maze of {day.isoformat()}{' in fog' if fog else ''}",
         map_name=base.map_name,
         case=base.case,
@@ -317,6 +317,16 @@ def _pursue_path(
 def today() -> datetime.date:
     """The date where the player is."""
     return datetime.datetime.now().astimezone().date()
+
+
+def yesterday() -> datetime.date:
+    """The day before ``today``, of which a board tells who won."""
+    return today() - datetime.timedelta(days=1)
+
+
+def daily_id(day: datetime.date) -> str:
+    """The id of a day's level, which takes no map to be drawn."""
+    return f"{DAILY_PREFIX}{day.isoformat()}"
 
 
 def find_playable_level(name: str) -> GameLevel:

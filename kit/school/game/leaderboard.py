@@ -8,6 +8,7 @@ for friends, and must not be used for marks.
 
 from __future__ import annotations
 
+import datetime
 import hashlib
 import json
 import os
@@ -23,7 +24,7 @@ from typing import Final
 from kit.arrays import FloatArray
 from kit.plain_files import open_plain_file
 from kit.run.recording import Recording
-from kit.school.game.daily import DAILY_PREFIX, daily_level, today
+from kit.school.game.daily import DAILY_PREFIX, daily_id, daily_level, today, yesterday
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.medal import RUNGS, Medal
 from kit.school.game.race import DriverKind
@@ -192,10 +193,11 @@ def own_name(folder: Path) -> str:
 
 
 def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> list[LeaderboardEntry]:
-    """Judges the drives of all who have joined, by default on all levels and that of the day; sorted by level and time.
+    """Judges the drives of all who have joined, by default on all levels, that of the day and that of the day before, where only what
+    stood there on its day counts; sorted by level and time.
     Passes over what may not stand there, and what is another's drive by hand. Takes about a second for twenty drives that were not judged before."""
     names = _user_names(folder)
-    read = levels if levels is not None else (*all_levels(), daily_level(today()))
+    read = levels if levels is not None else (*all_levels(), *_days_on_board(folder))
     users = {**names, **dict.fromkeys(_drivers(folder))}
     judges = {user: _Judge(user, MAX_TICKS_OF_ONE_USER * len(read)) for user in users}
     entries = [
@@ -205,6 +207,7 @@ def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> lis
         for driver in DriverKind
         if (judged := judges[user].judge(_standing_file(folder, user, level.id, driver), level, driver))
         is not None
+        and _stood_on_its_day(level, judged[1])
     ]
     lengths: dict[str, set[int]] = {}
     for entry in entries:
@@ -329,6 +332,19 @@ def _standing_file(folder: Path, user: int, level: str, driver: DriverKind) -> P
         with suppress(OSError):
             return next((each for each in _former_files(file) if each.lstat().st_uid == user), file)
     return file
+
+
+def _days_on_board(folder: Path) -> Iterator[GameLevel]:
+    """Today's level, and yesterday's where anybody has driven it."""
+    yield daily_level(today())
+    if any(folder.glob(f"*.{daily_id(yesterday())}.*")):
+        yield daily_level(yesterday())
+
+
+def _stood_on_its_day(level: GameLevel, since_ns: int) -> bool:
+    """Whether a drive was put there before its level was over, as yesterday's is."""
+    there = datetime.datetime.fromtimestamp(since_ns / 1e9).astimezone().date()
+    return level.id != daily_id(yesterday()) or there < today()
 
 
 def _is_as_long(ticks: Iterable[int], lengths: Collection[int]) -> bool:

@@ -7,7 +7,7 @@ from typing import Final
 
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
 from kit.plain_text import counted
-from kit.school.game.daily import DAILY_PREFIX, daily_level, today
+from kit.school.game.daily import DAILY_PREFIX, daily_id, today, yesterday
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import all_levels
 from kit.school.game.medal import RUNGS, Medal, medal_time
@@ -59,8 +59,9 @@ def _driver_text(entry: LeaderboardEntry) -> str:
 
 
 def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
-    """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
-    titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
+    """The quickest drives of today's level, of yesterday's and of each other. ``entries``: in the order of ``read_entries``."""
+    days = {daily_id(today()): "Today's level", daily_id(yesterday()): "Yesterday's level"}
+    titles = days | {each.id: each.title for each in all_levels()}
     rows = tuple(
         (title, *cells)
         for level, title in titles.items()
@@ -71,7 +72,7 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
 
 def todays_times(entries: Sequence[LeaderboardEntry]) -> Table:
     """The quickest drives of today's level alone."""
-    return Table("today", "", _TIMES, tuple(_times_on(entries, daily_level(today()).id, BEST_TODAY)))
+    return Table("today", "", _TIMES, tuple(_times_on(entries, daily_id(today()), BEST_TODAY)))
 
 
 _TIMES: Final = (Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import io
 import json
 import os
@@ -19,6 +20,7 @@ from kit.controllers import find_controller
 from kit.document.layout import lines_of
 from kit.run.recording import Input, Recording
 from kit.school.game import ghosts, leaderboard, references, shared_drives
+from kit.school.game.daily import daily_level, today
 from kit.school.game.leaderboard import (
     MAX_NAME_BYTES,
     MAX_NAME_LENGTH,
@@ -43,6 +45,7 @@ from kit.school.game.shared_drives import (
 )
 from kit.school.game.starts import OWN_SEED
 from kit.school.progress import EventKind, ProgressJournal
+from kit.tui.rows import leaderboard_rows
 from kit.tui.rows.leaderboard_rows import leaderboard_times
 from kit.workspace import open_workspace
 from tests.kit_content import kit_levels
@@ -455,6 +458,34 @@ def test_a_drive_of_a_program_is_none_by_hand(tmp_path: Path, user: int) -> None
     for file in board.glob(f"{OWN}.{FIRST.id}.controller.*"):
         file.unlink()
     assert [each.user for each in read_entries(board, [FIRST])] == [user], "else it would stand"
+
+
+def test_yesterdays_level_stays_a_day_with_who_drove_it_then(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = today()
+    level = daily_level(now)
+    publish_drives(tmp_path, "Ada", {(level.id, KEYS): [keys_drive(level)[1]]})
+
+    def on_the_board() -> list[str]:
+        entries = read_entries(tmp_path)
+        return [str(each[0]) for each in leaderboard_times(entries).rows]
+
+    def let_pass(days: int) -> None:
+        for module in (leaderboard, leaderboard_rows):
+            monkeypatch.setattr(module, "today", lambda: now + datetime.timedelta(days=days))
+            monkeypatch.setattr(module, "yesterday", lambda: now + datetime.timedelta(days=days - 1))
+
+    assert on_the_board() == ["Today's level"]
+    let_pass(1)
+    assert on_the_board() == ["Yesterday's level"]
+    let_pass(2)
+    assert on_the_board() == []
+    let_pass(1)
+    late = daily_level(now - datetime.timedelta(days=1))  # driven today, when it was over
+    let_pass(0)
+    publish_drives(tmp_path, "Ada", {(late.id, KEYS): [keys_drive(late)[1]]})
+    assert on_the_board() == ["Today's level"]
 
 
 @pytest.mark.usefixtures("of_many_users")
