@@ -53,10 +53,9 @@ def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord, width: int
     if not level.has_medals:
         return [row(("   your best time so far", "good"))] if record.is_best else []
     if not finish.reached:
-        return [
-            row((f"   {NO_STAR} ", "dim"), ("no medal yet", "dim")),
-            *(row(" " * MARK, each) for each in wrap(f"skill: {level.skill}", width - MARK) if level.skill),
-        ]
+        needed = f"skill: {level.skill}" if level.skill and finish.failure is None else ""
+        skill = [row(" " * MARK, each) for each in wrap(needed, width - MARK) if each]
+        return [row((f"   {NO_STAR} ", "dim"), ("no medal yet", "dim")), *skill]
     rows = [medal_row(record.medal, is_new=record.medal > record.previous_medal)]
     for rule in record.rules:
         new = " (new)" if rule in record.new_rules else ""

@@ -162,12 +162,13 @@ def other_start(number: int, seconds: float) -> Row:
 
 
 def starts_rows(finishes: Sequence[RaceFinish], counts: int) -> list[Row]:
-    """The times of a program's drives from all starts, the one that counts in brackets; none for a single drive."""
+    """The times of a program's drives from all starts, ``-`` where it did not arrive, the one that counts in brackets; none for
+    a single drive."""
     if len(finishes) < 2:
         return []
-    times = [f"{each.seconds:.2f}" if each.reached else "not there" for each in finishes]
+    times = [f"{each.seconds:.2f} s" if each.reached else "-" for each in finishes]
     times = [f"[{time}]" if number == counts else time for number, time in enumerate(times)]
-    return [row((f"   {len(times)} starts  ", "dim"), "  ".join(times), (" s", "dim"))]
+    return [row((f"   {len(times)} starts  ", "dim"), "  ".join(times))]
 
 
 def opens_after(level: GameLevel) -> str:

@@ -22,6 +22,6 @@ def agent_items(runs: Path, before: str = "") -> list[PickerItem]:
                 continue
             text, best = f"agent: {run.config().choice.title}", run.summary().best_evaluation
             if best is not None:
-                text += f", at least {min(success_shares(best).values()):.0%} arrive"
+                text += f", {min(success_shares(best).values()):.0%} arrive in its worst case"
             items.append(PickerItem(f"{before}{run.name}", run.name, text))
     return items

@@ -10,9 +10,16 @@ import pytest
 from kit.school.game.levels import all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import GameSummary, LevelProgress, level_progress
-from kit.school.game.race import DriverKind
+from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.rows.level_map_rows import map_places, map_rows
-from kit.tui.rows.level_rows import about, before_the_start, game_progress, world_heading, world_levels
+from kit.tui.rows.level_rows import (
+    about,
+    before_the_start,
+    game_progress,
+    starts_rows,
+    world_heading,
+    world_levels,
+)
 from kit.tui.widgets.text_rows import _ASCII
 from tests.kit_content import kit_levels
 from tests.tui.lesson_stage import row_text
@@ -110,3 +117,10 @@ def test_a_locked_level_says_so_and_a_dash_means_that_it_is_not_meant_for_a_driv
         _, shut = map(row_text, world_levels([replace(each, is_open=False)], "", {}, 80))
         assert "locked" in shut
         assert " - " not in shut
+
+
+def test_where_a_program_did_not_arrive_is_no_time() -> None:
+    reached, lost = RaceFinish(True, 6.0, 0), RaceFinish(False, 72.0, 0)
+    (shown,) = map(row_text, starts_rows([reached, lost, lost, lost, reached], 1))
+    assert shown.split() == ["5", "starts", "6.00", "s", "[-]", "-", "-", "6.00", "s"]
+    assert row_text(starts_rows([lost] * 5, 0)[0]).split()[2:] == ["[-]", "-", "-", "-", "-"]
