@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from kit.tui.app import KitApp
     from kit.tui.screens.lesson_drive import ReplayScreen
 
-STAR, NO_STAR, NOT_MEANT = "*", ".", "-"
+STAR, NO_STAR = "*", "."
 
 
 @contextmanager
@@ -98,6 +98,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game play first-drive             drive a level by hand
     kit game race the-maze --controller my_controller.py
     kit game race left-turn --agent my_run   race an agent that you trained
+    kit task new mine --level left-turn   to train an agent for a level
     kit game race mine/task.yaml --agent my_run   use your own task
     kit game replay left-turn             replay your best drive
     kit game daily                        the same level for everyone today
@@ -422,9 +423,8 @@ def _print_levels(summary: GameSummary) -> None:
 
     blocks: list[Block] = [
         Text(
-            "Of each level: its number; the medals by hand, by your program and by your agent (B, S, G, M, R; - for agents "
-            "where no training has what the level asks for); the stars of five extra rules; its name; your best times, or what "
-            "opens it."
+            "Of each level: its number; the medals by hand, by your program and by your agent (B, S, G, M, R); "
+            "the stars of five extra rules; its name; your best times, or what opens it."
         )
     ]
     found = summary.levels
@@ -435,8 +435,6 @@ def _print_levels(summary: GameSummary) -> None:
                 continue
             level = each.level
             medals = "".join(_medal_letter(each.medals.get(driver, Medal.NONE)) for driver in DriverKind)
-            if level.untrained and medals.endswith(NO_STAR):
-                medals = medals[:-1] + NOT_MEANT
             stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
             times = ", ".join(f"{driver.phrase} {time:.2f} s" for driver, time in each.best_times.items())
             lesson = f", or after lesson {level.lesson_number}" if level.lesson_number else ""

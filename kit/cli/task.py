@@ -14,7 +14,7 @@ from kit.cli.existing_path import ExistingPath
 from kit.cli.output_file import OutputFile
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
-from kit.learning.authoring.new_task import NewTaskError, new_task_file
+from kit.learning.authoring.new_task import NewTaskError, new_task_file, write_task
 from kit.learning.authoring.task_archive import TaskArchiveError, pack_task, unpack_task
 from kit.learning.authoring.task_check import check_task
 from kit.learning.authoring.task_text import (
@@ -28,11 +28,13 @@ from kit.learning.policies.policy_node import node_refusals
 from kit.learning.tasks.catalogue import all_tasks, find_task
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.own_files import own_task_files, workspace_folders, workspace_task_file
-from kit.learning.tasks.task_reader import read_task, task_name
+from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
 from kit.learning.training.run_check import check_reward
 from kit.plain_text import counted, wrap
 from kit.render.encode import ENCODERS
 from kit.render.world_text import scene_rows
+from kit.school.game.level_task import MEMORY, memory_steps, needs_memory, task_text
+from kit.school.game.levels import GameLevel, UnknownLevel, find_level
 from kit.school.game.task_levels import race_command, race_refusals
 
 
@@ -42,6 +44,7 @@ def command() -> None:
 
     \b
     kit task new mine --from turn
+    kit task new mine --level depot  for an agent of your own on a level of the game
     kit task keys                    list all keys of a task file
     kit task check mine
     kit task show mine
@@ -67,12 +70,18 @@ def command() -> None:
     show_default=True,
     help="One of the kit's tasks or maps, a map of your own, or a folder with a world.yaml.",
 )
-def new(name: str, source: str) -> None:
+@click.option(
+    "--level", help="Instead: a level of the game, by its name or number, for an agent to race there."
+)
+def new(name: str, source: str, level: str | None) -> None:
     """Create a task file, ready to train. It is NAME/task.yaml here, or FOLDER/NAME.yaml beside your own world."""
     with learning_options.explained_errors():
         try:
+            if level is not None:
+                _new_of_level(name, find_level(level))
+                return
             file = new_task_file(name, source, Path())
-        except NewTaskError as error:
+        except (NewTaskError, UnknownLevel) as error:
             messages.fail(str(error))
         read = read_task(file)
         check_task(read)
@@ -81,6 +90,17 @@ def new(name: str, source: str) -> None:
         shown = name if found_by_name else file
         messages.say(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
         _say_whether_it_can_be_raced(read.task)
+
+
+def _new_of_level(name: str, level: GameLevel) -> None:
+    """Writes the task of a level, and says how to come from it to the race. Raises NewTaskError and UnknownLevel."""
+    file = write_task(name, task_text(level), Path(name, TASK_FILE))
+    check_task(read_task(file))
+    steps = memory_steps(level)
+    chosen = f" --algo {MEMORY}{f' --steps {steps}' if steps else ''}" if needs_memory(level) else ""
+    messages.say(f"{file}: edit it, or train with it as it is:")
+    click.echo(f"  kit train {name}{chosen} --name {name}")
+    click.echo(f"  kit game race {level.command_name} --agent {name}")
 
 
 @command.command()

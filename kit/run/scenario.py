@@ -86,9 +86,11 @@ def scenario_on_map(card: MapCard, case: MapCase | None = None) -> Scenario:
     poses = {card.robot: case.start, BEACON: Pose(*case.target)}
     if card.partner is not None and case.partner_start is not None:
         poses[card.partner] = case.partner_start
-    from kit.sim.simulation import load_world  # only where a world is read: it brings the whole simulator
+    from kit.sim.card_world import (
+        load_card_world,  # only where a world is read: it brings the whole simulator
+    )
 
-    world = load_world(card.world_file, root=card.root)
+    world = load_card_world(card)
     models = tuple(replace(model, pose=poses.get(model.name, model.pose)) for model in world.models)
     return Scenario(card.name, card.title, replace(world, models=models), card.robot, case)
 

@@ -48,6 +48,34 @@ class MapCase:
     """The start of the map's partner, if it has one; None: its pose in the world file."""
 
 
+@dataclass(frozen=True, slots=True)
+class MovingCart:
+    """A cart that goes to and fro by itself, added to a map."""
+
+    name: str
+    start: Pose
+    delta: Pose
+    """From one end of its way to the other."""
+    duration: float
+    """Time from one end to the other [s]."""
+
+
+def read_carts(section: Section) -> tuple[MovingCart, ...]:
+    """Reads the ``carts`` of a level or a task, if it has any."""
+    carts = []
+    for cart in section.sections("carts", ()):
+        carts.append(
+            MovingCart(
+                cart.name("name"),
+                cart.pose("start"),
+                Pose(*cart.point("delta"), 0.0),
+                cart.number("duration", above=0),
+            )
+        )
+        cart.finish()
+    return tuple(carts)
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class MapCard:
     """One map of the catalogue."""
@@ -65,6 +93,8 @@ class MapCard:
     cases: tuple[MapCase, ...]
     root: Path
     """The folder its world may read: that of all maps, since they share their robots."""
+    carts: tuple[MovingCart, ...] = ()
+    """Those that a task adds."""
 
     def __repr__(self) -> str:
         """``MapCard(turn: cases turn_a_to_b, turn_b_to_a)``"""

@@ -269,3 +269,15 @@ def test_a_packed_task_is_checked_and_unpacked() -> None:
     assert not Path("wrong").exists()
     Path("no.zip").write_text("no archive")
     assert "not a zip file" in kit("task", "check", "no.zip", code=2).output
+
+
+def test_a_new_task_of_a_level_says_the_way_to_its_race() -> None:
+    told = kit("task", "new", "mine", "--level", "lying-wheels").output
+    assert "kit train mine --algo recurrent-ppo" in told
+    assert "kit game race lying-wheels --agent mine" in told
+    assert ": valid" in kit("task", "check", "mine").output
+    assert "already exists" in kit("task", "new", "mine", "--level", "depot", code=2).output
+    kit("task", "new", "three", "--level", "depot")
+    assert "rad/s" not in kit("task", "show", "three").output
+    assert "left-turn" in kit("task", "new", "other", "--level", "left-turm", code=2).output
+    assert not Path("other").exists()

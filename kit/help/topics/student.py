@@ -68,6 +68,8 @@ Saving the file checks it too.
 
 A training is a process of its own: it goes on when you leave the screen or the line drops. `kit runs --stop first` stops it,
 `kit train --resume first` goes on. Networks need the extra `learn`; `q-learning` and `sarsa` do not.
+
+`kit task new mine --level left-turn` makes a task of a level of the game, and says how to train an agent by it and race it.
 """,
         ),
         chapter(

@@ -74,22 +74,25 @@ def new_task_file(name: str, source: str, folder: Path) -> Path:
 
     NewTaskError if the name is taken or nothing is known by ``source``; UnsupportedWorld; WorldError.
     """
-    if not NAME_PATTERN.fullmatch(name):
-        raise NewTaskError(f"{quoted(name)}: a task's name may contain letters, digits, '_' and '-'.")
     path = Path(source)
     if not path.exists():
         path = own_map_folder(source) or path
     if source in task_names():
-        file, text = folder / name / TASK_FILE, (tasks_folder() / f"{source}.yaml").read_text()
-    elif source in map_names():
-        file, text = folder / name / TASK_FILE, _map_text(find_map(source))
-    elif (path / WORLD_FILE).is_file():
-        file, text = path / f"{name}.yaml", _world_text(path / WORLD_FILE)
-    else:
-        raise NewTaskError(
-            f"{quoted(source)} is not one of the kit's tasks or maps, nor a map of yours, nor a folder with a {WORLD_FILE}. "
-            "`kit task list` and `kit maps` list them."
-        )
+        return write_task(name, (tasks_folder() / f"{source}.yaml").read_text(), folder / name / TASK_FILE)
+    if source in map_names():
+        return write_task(name, _map_text(find_map(source)), folder / name / TASK_FILE)
+    if (path / WORLD_FILE).is_file():
+        return write_task(name, _world_text(path / WORLD_FILE), path / f"{name}.yaml")
+    raise NewTaskError(
+        f"{quoted(source)} is not one of the kit's tasks or maps, nor a map of yours, nor a folder with a {WORLD_FILE}. "
+        "`kit task list` and `kit maps` list them."
+    )
+
+
+def write_task(name: str, text: str, file: Path) -> Path:
+    """Writes the new file of a task of this name, and returns it. NewTaskError if the name cannot be one, or is taken."""
+    if not NAME_PATTERN.fullmatch(name):
+        raise NewTaskError(f"{quoted(name)}: a task's name may contain letters, digits, '_' and '-'.")
     if file.exists():
         raise NewTaskError(f"{file} already exists: choose another name.")
     file.parent.mkdir(parents=True, exist_ok=True)

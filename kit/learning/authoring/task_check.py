@@ -19,7 +19,7 @@ from kit.learning.tasks.student_reward import reward_parameters
 from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.task_reader import ReadTask
 from kit.plain_text import quoted, suggestion
-from kit.sim.simulation import load_world
+from kit.sim.card_world import load_card_world
 
 
 def check_task(read: ReadTask) -> None:
@@ -61,7 +61,7 @@ def _check_robots(read: ReadTask) -> None:
     if not read.section.has("robots"):
         return
     for card in read.task.map_cards:
-        names = [model.name for model in load_world(card.world_file, root=card.root).models]
+        names = [model.name for model in load_card_world(card).models]
         for robot in read.task.robots_on(card):
             if robot not in names:
                 read.section.error(

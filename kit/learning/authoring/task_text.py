@@ -167,13 +167,16 @@ def _action_blocks(task: LearningTask) -> Iterator[Block]:
     checks = "" if task.collision_checks == 1 else f", {task.collision_checks} collision checks"
     stops = ", then stopped until the next command" if task.stops_between else ""
     time = f"for {task.step_time:g} s{checks}{stops}"
+    card, _ = task.map_cases()[0]
+    is_tricycle = load_batch_map(card, task.robots_on(card)).robot.wheelbase > 0.0
+    turn, unit = ("angle of the front wheel", "rad") if is_tricycle else ("turn", "rad/s")
     if not isinstance(actions, DiscreteActions):
         (slow, fast), (right, left) = actions.linear, actions.angular
-        speeds = f"any speed from {slow:g} to {fast:g} m/s and turn from {right:g} to {left:g} rad/s"
+        speeds = f"any speed from {slow:g} to {fast:g} m/s and {turn} from {right:g} to {left:g} {unit}"
         yield Text(f"{speeds}, {time}", lead="does")
         return
     yield Text(f"one of {len(actions.names)} twists, {time}:", lead="does")
-    columns = (Column("", CellStyle.TEXT), Column("m/s"), Column("rad/s"))
+    columns = (Column("", CellStyle.TEXT), Column("m/s"), Column(unit))
     rows = tuple((name, *twist) for name, twist in zip(actions.names, actions.twist_table, strict=True))
     yield Table("actions", "", columns, rows, is_ruled=False, indent=2, is_tight=True)
 

@@ -375,7 +375,7 @@ class BatchEnv:
         """The state that the next step begins with: where a route's target was reached, with the next one."""
         if not self.task.goal.is_route:
             return after
-        which = np.flatnonzero(after.count > before.count)
+        which = np.flatnonzero(np.floor(after.count) > np.floor(before.count))
         if not len(which):
             return after
         case_arrays, cases = self._case_arrays, after.case[which]

@@ -18,6 +18,7 @@ from kit.learning.maps.obstacles import SEEN, TOUCHED, Obstacle, ObstaclePart
 from kit.learning.maps.ray_directions import RAY_COUNT, ray_direction
 from kit.learning.maps.wall_culling import cull_walls
 from kit.plain_text import quoted, suggestion
+from kit.sim.card_world import load_card_world
 from kit.sim.plugins.bumper import BumperParams
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.imu import ImuParams
@@ -25,7 +26,6 @@ from kit.sim.plugins.joint_states import JointStatesParams
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.plugins.tricycle_drive import TricycleDriveParams
 from kit.sim.plugins.tween import TweenParams
-from kit.sim.simulation import load_world
 from kit.world.catalogue import MapCard
 from kit.world.collision_rules import footprint_contains
 from kit.world.records import Body, Circle, Footprint, Layer, Model, PluginSpec, Polygon, World
@@ -102,7 +102,7 @@ def load_batch_map(card: MapCard, robots: tuple[str, ...] | None = None) -> Batc
 
 @cache
 def _load_batch_map(card: MapCard, robots: tuple[str, ...]) -> BatchMap:
-    return batch_map_of_world(load_world(card.world_file, root=card.root), card.name, robots)
+    return batch_map_of_world(load_card_world(card), card.name, robots)
 
 
 def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) -> BatchMap:

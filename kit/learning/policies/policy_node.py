@@ -24,9 +24,9 @@ from kit.learning.policies.policy_node_text import GOAL_PROGRAMS, can_count, nod
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
+from kit.sim.card_world import load_card_world
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.plugins.model_tf_publisher import frame_in_world
-from kit.sim.simulation import load_world
 from kit.world.catalogue import MapCard
 from kit.world.records import Model
 
@@ -48,7 +48,7 @@ def format_policy_node(policy: Policy) -> str:
     policy.check_fits(task)
     if refused := node_refusals(task):
         raise PolicyError(f"no node can be written for this policy: {'; '.join(refused)}.")
-    return node_text(_format_constants(policy, task), task.goal.kind if task.observation.achieved else None)
+    return node_text(_format_constants(policy, task), task.goal.kind if _is_counted(task) else None)
 
 
 def node_refusals(task: LearningTask) -> tuple[str, ...]:
@@ -67,7 +67,7 @@ def _refusals(task: LearningTask) -> Iterator[str]:
             f"{' and '.join(task.robots_on(_first_card(task)))} share {', '.join(sorted(shared))}: give each of them a "
             "namespace of its own in the world's file"
         )
-    if seen.achieved:
+    if _is_counted(task):
         yield from _refusals_to_count(task)
     leader = task.map_cases()[0][1].targets.model
     if leader is not None and seen.target and not leader_frame(task):
@@ -75,6 +75,11 @@ def _refusals(task: LearningTask) -> Iterator[str]:
             f"a node is not told where {leader} is: give its model a plugin of the type ModelTfPublisher, with "
             "publish_tf_world: true"
         )
+
+
+def _is_counted(task: LearningTask) -> bool:
+    """Whether a node counts the task's goal."""
+    return task.observation.achieved or task.goal.needs_count
 
 
 def _refusals_to_count(task: LearningTask) -> Iterator[str]:
@@ -91,7 +96,7 @@ def _all_topics(topics: Sequence[RobotTopics]) -> list[str]:
 
 def node_count(task: LearningTask) -> NodeCount:
     """Counts the goal as the node of a policy of this task does. ValueError where none can: see ``node_refusals``."""
-    if not task.observation.achieved:
+    if not _is_counted(task):
         return NodeCount({})
     goal = task.goal
     if not can_count(goal.kind):
@@ -113,7 +118,7 @@ def _first_card(task: LearningTask) -> MapCard:
 def _models(task: LearningTask) -> dict[str, Model]:
     """The models of the first case's world, by name."""
     card = _first_card(task)
-    return {model.name: model for model in load_world(card.world_file, root=card.root).models}
+    return {model.name: model for model in load_card_world(card).models}
 
 
 def robot_topics(task: LearningTask) -> tuple[RobotTopics, ...]:
@@ -172,7 +177,7 @@ def _format_constants(policy: Policy, task: LearningTask) -> str:
         "LEADER_FRAME": leader_frame(task) if seen.target else "",
         "HULL": [] if task.measured_to == "axle" else [[list(c) for c in part] for part in arrays.robot.hull],
         "HEADING_TOLERANCE": math.pi if task.goal.heading_tolerance is None else task.goal.heading_tolerance,
-        "GOAL": _goal_facts(task) if seen.achieved else {},
+        "GOAL": _goal_facts(task) if _is_counted(task) else {},
         "LEFT_RAYS": list(LEFT_RAYS) if seen.achieved else [],
     }
     lines = [f"{name} = {value!r}" for name, value in values.items()]

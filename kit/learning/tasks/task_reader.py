@@ -26,7 +26,7 @@ from kit.learning.tasks.reward_terms import TERMS, term_settings
 from kit.learning.tasks.rewards import REWARDS
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
-from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
+from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map, read_carts
 from kit.world.documents import MAX_YAML_BYTES, AllowedRoot, UnusableFile, WorldDocuments, read_text
 from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
@@ -132,7 +132,7 @@ class _TaskReader:
             reward=reward,
             reward_file=reward_file,
             cases=section.texts("on", ()),
-            cards=cards if section.has("world_file") or not maps else (),
+            cards=cards if any(each.carts for each in cards) or section.has("world_file") or not maps else (),
             own_cases=tuple((case.map_number, case.case) for case in cases),
             robot_names=robot_names,
             start=_read_start(section.section("start", None)),
@@ -160,6 +160,7 @@ class _TaskReader:
             if section.has("maps"):
                 section.error("a task uses maps of the kit or its own world, not both", "maps")
             return (), self._own_world()
+        carts = read_carts(section)
         names = section.texts("maps", at_least=1)
         world_file = section.text("world_file", WORLD_FILE)
         cards = []
@@ -167,7 +168,7 @@ class _TaskReader:
             try:
                 card = find_map(name)
                 file = AllowedRoot.of_folder(card.folder).resolve(world_file, card.folder)
-                cards.append(replace(card, world_file=file))
+                cards.append(replace(card, world_file=file, carts=carts))
                 if not is_file_there(file):
                     section.error(f"the map {name} has no file {quoted(world_file)}", "world_file")
             except UnknownMap as error:

@@ -38,7 +38,8 @@ from kit.run.lockstep import Observer
 from kit.run.recording import load_recording
 from kit.run.scenario import BEACON, Scenario
 from kit.run.session import Session
-from kit.sim.simulation import Simulation, load_world
+from kit.sim.card_world import load_card_world
+from kit.sim.simulation import Simulation
 from kit.world.catalogue import MapCard, MapCase
 
 EPISODES_PER_CASE: Final = 3
@@ -140,7 +141,7 @@ def _scenario(task: LearningTask, card: MapCard, names: tuple[str, ...], observe
     """The world with its robots where the observer's episode begins."""
     poses = {name: Pose(*pose) for name, pose in zip(names, observer.state.pose[0].tolist(), strict=True)}
     x, y = observer.state.target[0].tolist()
-    world = load_world(card.world_file, root=card.root)
+    world = load_card_world(card)
     placed = {**poses, BEACON: Pose(x, y)}
     models = tuple(replace(model, pose=placed.get(model.name, model.pose)) for model in world.models)
     starts = tuple(poses.values())

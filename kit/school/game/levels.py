@@ -8,7 +8,6 @@ from functools import cache
 from pathlib import Path
 from typing import Final, Literal
 
-from kit.geometry import Pose
 from kit.learning.tasks.disturbances import TURN_SHARE
 from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.goals.registry import read_goal
@@ -17,37 +16,22 @@ from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, find_scenario
 from kit.school.game.drive_commands import ReferenceDrive
 from kit.school.lessons.reading import lesson_number, lessons_folder
+from kit.sim.card_world import with_carts
 from kit.sim.motors import SpeedLimits
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.tricycle_drive import TricycleDriveParams
-from kit.sim.plugins.tween import TweenParams
-from kit.sim.simulation import load_model
-from kit.world.catalogue import MapCard, find_map, maps_folder
+from kit.world.catalogue import MapCard, MovingCart, find_map, read_carts
 from kit.world.documents import open_document
 from kit.world.problems import WorldError
-from kit.world.records import Model, PluginSpec
+from kit.world.records import PluginSpec
 from kit.world.yaml_section import Section
 
-CART_MODEL: Final = ("crossing", "slow_cart.model.yaml")
-"""Folder and file of the cart that levels add to maps."""
 SPEED: Final = 0.5
 """What the robot's motors give on a level, and what its keys ask for [m/s]."""
 TURN_RATE: Final = 1.5
 """[rad/s]"""
 PAIR_SPEED: Final = 0.52
 """The same for each of two wheelchairs: the outer one drives faster than the point between them [m/s]."""
-
-
-@dataclass(frozen=True, slots=True)
-class MovingCart:
-    """A cart that goes to and fro by itself."""
-
-    name: str
-    start: Pose
-    delta: Pose
-    """From one end of its way to the other."""
-    duration: float
-    """Time from one end to the other [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,11 +68,7 @@ def apply_conditions(
         else model
         for model in world.models
     ]
-    file = maps_folder().joinpath(*CART_MODEL)
-    for cart in conditions.carts:
-        model = load_model(file, world, name=cart.name, namespace=cart.name, pose=cart.start)
-        models.append(_moving_cart(model, cart))
-    return replace(scenario, world=replace(world, models=tuple(models)))
+    return replace(scenario, world=with_carts(replace(world, models=tuple(models)), conditions.carts))
 
 
 def _limit_drive(plugin: PluginSpec, conditions: LevelConditions, motors: tuple[float, float]) -> PluginSpec:
@@ -106,17 +86,6 @@ def _limit_drive(plugin: PluginSpec, conditions: LevelConditions, motors: tuple[
         return replace(plugin, params=replace(params, linear=linear, odometry=odometry))
     angular = SpeedLimits(TURN_SHARE * acceleration, TURN_SHARE * acceleration, turn_rate)
     return replace(plugin, params=replace(params, linear=linear, angular=angular, odometry=odometry))
-
-
-def _moving_cart(model: Model, cart: MovingCart) -> Model:
-    """A cart's model with the way of one cart."""
-    plugins = tuple(
-        replace(plugin, params=replace(plugin.params, delta=cart.delta, duration=cart.duration))
-        if isinstance(plugin.params, TweenParams)
-        else plugin
-        for plugin in model.plugins
-    )
-    return replace(model, plugins=plugins)
 
 
 LEVELS_FILE: Final = "levels.yaml"
@@ -195,8 +164,6 @@ class GameLevel:
     """Its reference drive, where that is not in the file of all."""
     conditions: LevelConditions = UNCHANGED
     rules: ExtraRules = ExtraRules()
-    untrained: str = ""
-    """What of it no training has, so that it is for hands and programs alone; empty where agents can learn all of it."""
 
     @property
     def lesson_number(self) -> str:
@@ -312,11 +279,11 @@ def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[
             )
         each.finish()
         try:
-            scenario = level.find_scenario()
+            level.find_scenario()
         except (LookupError, WorldError) as error:
             each.error(str(error), "place")
             continue
-        yield replace(level, untrained=level.untrained or _untrained_part(level, scenario))
+        yield level
 
 
 def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) -> GameLevel:
@@ -350,21 +317,7 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
             each.integer("max_lines", MAX_LINES, minimum=1, maximum=1000),
             each.integer("max_training_steps", MAX_TRAINING_STEPS, minimum=1, maximum=10**9),
         ),
-        untrained=each.text("untrained", ""),
     )
-
-
-def _untrained_part(level: GameLevel, scenario: Scenario) -> str:
-    """What of a level ``kit.learning`` has no counterpart of."""
-    plugins = [plugin for model in scenario.world.models for plugin in model.plugins]
-    parts = {
-        "tricycles": any(isinstance(plugin.params, TricycleDriveParams) for plugin in plugins),
-        "ice": level.conditions.acceleration,
-        "wheels that lie": level.conditions.wheel_error,
-        "batteries": level.conditions.charge,
-        "leaders": level.leader,
-    }
-    return next((name for name, is_there in parts.items() if is_there), "")
 
 
 def _check_goal(each: Section, goal: Goal, targets: tuple[tuple[float, float], ...], leader: str) -> None:
@@ -380,22 +333,11 @@ def _check_goal(each: Section, goal: Goal, targets: tuple[tuple[float, float], .
 
 
 def _read_conditions(each: Section) -> LevelConditions:
-    carts = []
-    for cart in each.sections("carts", ()):
-        carts.append(
-            MovingCart(
-                cart.name("name"),
-                cart.pose("start"),
-                Pose(*cart.point("delta"), 0.0),
-                cart.number("duration", above=0),
-            )
-        )
-        cart.finish()
     return LevelConditions(
         acceleration=each.number("acceleration", 0.0, minimum=0),
         wheel_error=each.number("wheel_error", 0.0, minimum=0, maximum=0.5),
         fog=each.flag("fog", False),
         charge=each.number("charge", 0.0, minimum=0),
         docks=each.points("docks") if each.has("docks") else (),
-        carts=tuple(carts),
+        carts=read_carts(each),
     )

@@ -93,7 +93,8 @@ class Objective:
             after = replace(after, obstacle_distance=self._nearest_obstacles(simulation, after.pose))
         counts = self._count.count(Transition(before, after, max_steps=0))
         self._state = replace(after, count=counts, achieved=counts / self._needed)
-        if arrived is not None and self._goal.is_route:
+        is_counted = np.floor(counts[0]) > np.floor(before.count[0])
+        if arrived is not None and self._goal.is_route and is_counted:
             self._left.remove(arrived)
             self.splits = (*self.splits, simulation.time_ns / 1e9)
         if self._state.achieved[0] >= 1.0:

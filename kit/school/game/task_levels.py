@@ -27,8 +27,8 @@ from kit.plain_text import quoted
 from kit.run.scenario import BEACON, Scenario
 from kit.school.game.levels import GameLevel, apply_conditions
 from kit.school.game.starts import LaterCurve
+from kit.sim.card_world import load_card_world
 from kit.sim.plugins.tween import MODES, TweenParams
-from kit.sim.simulation import load_world
 from kit.world.catalogue import WORLD_FILE, MapCard, MapCase
 from kit.world.problems import Problem, WorldError
 from kit.world.records import Model, PluginSpec, SourceLocation
@@ -84,7 +84,7 @@ def episode_scenario(level: TaskLevel, start: EpisodeStart) -> Scenario:
     robots = task.robots_on(card)
     poses = dict(zip(robots, start.robots, strict=True))
     x, y, heading = start.target
-    world = load_world(card.world_file, root=card.root)
+    world = load_card_world(card)
     models = [
         replace(model, pose=poses.get(model.name, Pose(x, y) if model.name == BEACON else model.pose))
         for model in world.models

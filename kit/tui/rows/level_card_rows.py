@@ -14,8 +14,7 @@ from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
 from kit.tui.rows.drive_end_rows import sector_rows
 from kit.tui.rows.ladder_rows import RESULT_BAR, ladder_bar
-from kit.tui.rows.level_rows import not_for_agents
-from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, NOT_MEANT, STAR
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
 from kit.tui.rows.ruled_title import ruled_title
 
 COLUMN: Final = 54
@@ -81,8 +80,6 @@ def star_rows(level: GameLevel, kept: Collection[ExtraRule], width: int) -> list
         sign, style, text = NO_STAR, "", rule.description(level)
         if rule in kept:
             sign, style = STAR, "warn"
-        elif rule is ExtraRule.FEW_STEPS and level.untrained:
-            sign, text = NOT_MEANT, not_for_agents(level)
         first, *rest = wrap(text, width - 2)
         rows += [row((f"{sign} ", style), first), *(row("  ", each) for each in rest)]
     return rows

@@ -13,7 +13,7 @@ from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgres
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import STARTS
 from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_words
-from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, NOT_MEANT, STAR
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
 
 TITLE_WIDTH: Final = 24
 NARROW_TITLE: Final = 17
@@ -89,9 +89,7 @@ def world_levels(
         medals: list[str | tuple[str, str]] = []
         for driver, width in zip(DriverKind, MEDAL_WIDTHS, strict=True):
             medal = each.medals.get(driver, Medal.NONE)
-            is_meant = driver is not DriverKind.AGENT or not level.untrained
-            sign = MEDAL_SIGNS[medal] if medal or is_meant else NOT_MEANT
-            medals.append((f"{sign:<{width}}", MEDAL_STYLES[medal]))
+            medals.append((f"{MEDAL_SIGNS[medal]:<{width}}", MEDAL_STYLES[medal]))
         if not each.is_open:
             medals = [(f"{'locked':<{sum(MEDAL_WIDTHS)}}", "dim")]
         best = min(each.best_times.values(), default=None)
@@ -134,9 +132,6 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         return [*rows, row(("best   ", "dim"), ", ".join(times) or "none yet")]
     for driver in DriverKind:
         best = progress.best_times.get(driver)
-        if driver is DriverKind.AGENT and best is None and level.untrained:
-            rows.append(row((f"{driver.phrase:<11}", "dim"), not_for_agents(level)))
-            continue
         rows.append(
             row(
                 (f"{driver.phrase:<11}", "dim"),
@@ -147,10 +142,10 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
     return rows
 
 
-def not_for_agents(level: GameLevel) -> str:
-    """Why a level is not meant for agents; empty where it is."""
-    part = level.untrained
-    return f"For hands and programs: training has no {part}." if part else ""
+def way_to_agent(level: GameLevel) -> str:
+    """How to come to an agent for a level."""
+    command = f"`kit task new mine --level {level.id}`"
+    return f"{command} makes a task for it, and says how to train an agent and race it here."
 
 
 def other_start(number: int, seconds: float) -> Row:

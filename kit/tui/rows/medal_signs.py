@@ -6,8 +6,8 @@ from typing import Final
 
 from kit.school.game.medal import Medal
 
-STAR, NO_STAR, NOT_MEANT = "*", ".", "-"
-"""A star that was earned, one that was not, and a driver whom a level is not meant for."""
+STAR, NO_STAR = "*", "."
+"""A star that was earned, and one that was not."""
 MEDAL_SIGNS: Final = {
     Medal.NONE: NO_STAR,
     Medal.BRONZE: "B",

@@ -72,13 +72,14 @@ NOTES: Final = (
     ("", "few training steps"),
     ("bump", "back to the start, and all targets are to be reached again"),
     ("side by side", "a pair that is apart for longer gets bronze at best"),
-    ("agent -", "no training has what this level asks for"),
     ("locked", "finish the level before it, or its lesson; on the map ( )"),
 )
 
 
 DRIVE_ACTIONS: Final = ("hand_over", "agent", "replay", "two_players")
 """Actions that a challenge does not have."""
+NEW_AGENT: Final = " "
+"""Instead of the name of a run, of which none is blank."""
 STARTS: Final = (*DRIVE_ACTIONS, "open", "daily")
 """Actions that begin a drive or a replay."""
 ROWS_ABOVE_LEVELS: Final = 5
@@ -515,17 +516,15 @@ class LevelsScreen(RowsScreen[None]):
     async def action_agent(self) -> None:
         if not self._may_drive():
             return
-        if why_not := level_rows.not_for_agents(self.chosen.level):
-            self.app.push_screen(MessageDialog("Agents", why_not))
-            return
         choices = await to_thread(agent_items, self._workspace.runs)
-        if not choices:
-            from kit.tui.screens.challenge import NO_RUNS  # of no use to the first frame
-
-            self.app.push_screen(MessageDialog("Agents", NO_RUNS))
-            return
-        picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
-        if picked is not None:
+        picked: str | None = NEW_AGENT
+        if choices:
+            choices.append(PickerItem(NEW_AGENT, "a new one", "how to train one for this level"))
+            picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
+        if picked == NEW_AGENT:
+            title = f"An agent for {self.chosen.level.title}"
+            self.app.push_screen(MessageDialog(title, level_rows.way_to_agent(self.chosen.level)))
+        elif picked is not None:
             await self._drive_agent(picked)
 
     async def _drive_agent(self, name: str) -> None:

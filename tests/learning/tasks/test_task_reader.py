@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from kit.learning.authoring.task_check import check_task
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.policies.policy_node import leader_frame
 from kit.learning.tasks.actions import MAX_SPEED, MAX_TURN_RATE, ContinuousActions
 from kit.learning.tasks.case_reader import MAX_PLACES
 from kit.learning.tasks.catalogue import all_tasks, find_task, task_names, tasks_folder
@@ -321,3 +323,17 @@ def test_the_worlds_file_of_a_map_lies_in_its_folder(tmp_path: Path) -> None:
         file.write_text(f"{(tasks_folder() / 'turn.yaml').read_text()}\nworld_file: {name}\n")
         with pytest.raises(WorldError, match=r"outside|no file"):
             read_task(file)
+
+
+def test_a_task_adds_carts_to_its_map(tmp_path: Path) -> None:
+    carts = "carts: [{name: lorry, start: [0.9, 2.0, 0], delta: [4.0, 0], duration: 6}]\n"
+    text = (tasks_folder() / "behind-the-cart.yaml").read_text()
+    file = tmp_path / "task.yaml"
+    file.write_text(carts + text.replace("slow_cart", "lorry"))
+    read = read_task(file)
+    check_task(read)
+    assert BatchEnv(read.task, 1).obstacle_poses(0).shape == (4, 3)
+    assert leader_frame(read.task)
+    file.write_text(carts.replace("duration: 6", "duration: 0") + text)
+    with pytest.raises(WorldError, match=r"task.yaml:1:.*duration"):
+        read_task(file)

@@ -126,7 +126,7 @@ def judged(level: GameLevel, driver: DriverKind, drives: Sequence[Drive]) -> tup
 def measure(level: GameLevel, driver: str) -> MeasuredDrive:
     """Drives a level as the driver does; an agent that earns nothing is trained once more, for longer."""
     drive = _measure(level, driver)
-    is_worth_more = driver == "agent" and not level.untrained and not drive.medal(level)
+    is_worth_more = driver == "agent" and not drive.medal(level)
     return _measure(level, driver, is_second=True) if is_worth_more else drive
 
 

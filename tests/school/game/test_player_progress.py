@@ -106,7 +106,7 @@ def test_no_driver_has_gold_everywhere_and_every_level_has_a_rung_in_reach() -> 
         won = {driver: drives[level.id, driver].medal(level) for driver in medals}
         assert won["keys"] >= Medal.BRONZE, level.id
         assert max(won["laser"], won["map"]) >= Medal.BRONZE, level.id
-        assert bool(won["agent"]) is not bool(level.untrained), level.id
+        assert won["agent"] >= Medal.BRONZE, level.id
         assert min(won.values()) < Medal.GOLD, level.id
 
 

@@ -17,10 +17,8 @@ from kit.tui.rows.level_card_rows import (
     PARTS,
     best_splits,
     level_card,
-    star_rows,
     stars_and_sectors,
 )
-from kit.tui.rows.level_rows import not_for_agents
 from tests.kit_content import kit_levels
 from tests.tui.lesson_stage import row_text
 
@@ -71,13 +69,3 @@ def test_the_sectors_of_the_quickest_own_drive_stand_beside_the_stars() -> None:
     wide = [row_text(each) for each in stars_and_sectors(level, (), best, 2 * COLUMN)]
     assert sum("sector " in each for each in wide) == len(best[1])
     assert not any("sector " in row_text(each) for each in stars_and_sectors(level, (), best, COLUMN + 5))
-
-
-def test_a_level_without_a_training_says_so_instead_of_the_star_for_agents() -> None:
-    for level in LEVELS:
-        text = " ".join(row_text(each) for each in star_rows(level, (), 200))
-        assert ("For hands and programs" in text) is bool(level.untrained)
-        assert not_for_agents(level) in text
-        assert (ExtraRule.FEW_STEPS.description(level) in text) is not bool(level.untrained)
-        kept = " ".join(row_text(each) for each in star_rows(level, {ExtraRule.FEW_STEPS}, 200))
-        assert ExtraRule.FEW_STEPS.description(level) in kept

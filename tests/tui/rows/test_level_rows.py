@@ -108,12 +108,12 @@ def test_a_belt_and_a_count_of_each_world() -> None:
     assert "yellow belt" in worlds[-1]
 
 
-def test_a_locked_level_says_so_and_a_dash_means_that_it_is_not_meant_for_a_driver() -> None:
+def test_a_locked_level_says_so() -> None:
     found = [replace(each, is_open=True) for each in level_progress(kit_levels(), ())]
     for each in found:
         _, listed = map(row_text, world_levels([each], "", {}, 80))
         signs = listed.removeprefix("  ").removeprefix(each.level.title).split()[:3]
-        assert signs == [".", ".", "-" if each.level.untrained else "."]
+        assert signs == [".", ".", "."]
         _, shut = map(row_text, world_levels([replace(each, is_open=False)], "", {}, 80))
         assert "locked" in shut
         assert " - " not in shut

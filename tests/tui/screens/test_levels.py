@@ -233,6 +233,18 @@ def test_it_is_shown_how_far_the_ghosts_are_and_they_are_prepared_once(
     play(scene, progress, tmp_path / "desk")
 
 
+def test_who_has_no_agent_is_told_how_to_train_one_for_the_level(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: "First drive" in flat(pilot.app))
+        await pilot.press("a")
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
+        assert "kit task new mine --level first-drive" in flat(pilot.app)
+
+    play(scene, progress, tmp_path / "desk")
+
+
 @pytest.mark.long
 def test_a_task_of_ones_own_is_driven_by_hand_as_a_level(progress: ProgressJournal, tmp_path: Path) -> None:
     folder = tmp_path / "desk" / "worlds" / "hall"
@@ -686,24 +698,6 @@ def test_a_race_of_a_program_is_seen_and_a_controller_of_the_kit_earns_nothing(
         await pilot.press("escape")
         await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
         assert not screen._found[1].medals
-
-    play(scene, progress, tmp_path / "desk")
-
-
-def test_an_agent_is_not_asked_for_where_none_can_be_trained(
-    progress: ProgressJournal, tmp_path: Path
-) -> None:
-    content = {"driver": "keys", "reached": True, "seconds": 9.0, "bumps": 0, "medal": 1}
-    for level in LEVELS:
-        progress.add(EventKind.FINISH, level.id, content)
-    untrained = next(each for each in LEVELS if each.untrained)
-    (prepare_workspace(tmp_path / "desk").runs / "mine").mkdir()
-
-    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
-        screen._at = LEVELS.index(untrained)
-        await pilot.press("a")
-        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
-        assert untrained.untrained in flat(pilot.app)
 
     play(scene, progress, tmp_path / "desk")
 

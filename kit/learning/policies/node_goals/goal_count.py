@@ -48,6 +48,10 @@ class NodeCount:
         """The count after a step."""
         return count
 
+    def is_done(self, before: float, count: float, step: GoalStep) -> bool:
+        """Whether the robots are done with the target of a route, where the count was ``before``."""
+        return step.arrived
+
     def is_within(self, distance: np.ndarray) -> bool:
         """Whether all distances [m] lie between the goal's nearest and farthest."""
         return bool(((distance >= self.facts["nearest"]) & (distance <= self.facts["farthest"])).all())
@@ -97,10 +101,10 @@ class GoalProgress:
         else:
             arrived = all(self.inside)
             step = GoalStep(poses, self.before, arrived, np.array(self.target), beside)
-            self.achieved = self.goal_count.count(self.achieved, step)
+            before, self.achieved = self.achieved, self.goal_count.count(self.achieved, step)
             earlier, self.share = self.share, self.achieved / self.needed
             self.told_share = earlier if self.goal_count.is_observation_delayed else self.share
-            if arrived and len(self.left) > 1:
+            if len(self.left) > 1 and self.goal_count.is_done(before, self.achieved, step):
                 self.left = self.left[1:]
                 self.target = self.left[0]
                 self.find_arrivals(poses)

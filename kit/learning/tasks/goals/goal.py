@@ -162,6 +162,11 @@ class Goal(ABC):
         """Whether the target must be a model that moves."""
         return self.case_targets is CaseTargets.LEADER
 
+    @property
+    def needs_count(self) -> bool:
+        """Whether robots that are in a target are not done with it at once, so that a node must count."""
+        return False
+
     def route(self, targets: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
         """Where robots are to be, one place after the other [m, m]; ``targets``: those of the case."""
         return targets[:1] if self.case_targets is CaseTargets.PLACE else ()

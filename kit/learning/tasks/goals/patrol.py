@@ -14,6 +14,11 @@ from kit.learning.tasks.transition import Transition
 from kit.plain_text import counted
 from kit.world.yaml_section import Section
 
+STILL = 1e-4
+"""A robot that moves less than this in a step stands still [m]."""
+ROUNDING = 1e-6
+"""By so much of its time robots may have stood too little."""
+
 
 @dataclass(frozen=True, slots=True)
 class PatrolGoal(Goal):
@@ -21,6 +26,8 @@ class PatrolGoal(Goal):
 
     rounds: int = 1
     """Number of rounds through all targets."""
+    stay: float = 0.0
+    """For so long all robots stand still in a target before it counts [s]."""
 
     kind: ClassVar[str] = "patrol"
     case_targets: ClassVar[CaseTargets] = CaseTargets.ROUTE
@@ -28,29 +35,46 @@ class PatrolGoal(Goal):
 
     @classmethod
     def read(cls, section: Section) -> Self:
-        return cls(section.integer("rounds", 1, minimum=1, maximum=100))
+        return cls(
+            section.integer("rounds", 1, minimum=1, maximum=100),
+            section.number("stay", 0.0, minimum=0, maximum=60),
+        )
 
     @property
     def description(self) -> str:
-        return f"reach all targets in their order, {counted(self.rounds, 'time')}"
+        stay = f", and stand still for {self.stay:g} s in each" if self.stay else ""
+        return f"reach all targets in their order, {counted(self.rounds, 'time')}{stay}"
 
     def make_count(self, cases: Sequence[GoalCase], n: int, step_time: float) -> GoalCount:
-        return _PatrolCount(self, cases)
+        return _PatrolCount(self, cases, step_time)
+
+    @property
+    def needs_count(self) -> bool:
+        return self.stay > 0.0
 
     def progress(self, count: float, needed: float) -> str:
-        return f"{count:.0f} of {needed:.0f} targets"
+        return f"{int(count)} of {needed:.0f} targets"
 
     def route(self, targets: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
         return targets * self.rounds
 
 
 class _PatrolCount(GoalCount):
-    """The number of targets that have been reached."""
+    """The number of targets that have been reached, and the share of the time that robots have stood in the next one."""
 
-    def __init__(self, goal: PatrolGoal, cases: Sequence[GoalCase]) -> None:
+    def __init__(self, goal: PatrolGoal, cases: Sequence[GoalCase], step_time: float) -> None:
+        self._share = step_time / goal.stay if goal.stay else 1.0
         self.needed = np.array([float(goal.rounds * case.target_count) for case in cases])
 
     def count(self, transition: Transition) -> FloatArray:
         arrived = transition.in_target.all(axis=1) & ~transition.collided
-        counts: FloatArray = transition.before.count + arrived
+        before = transition.before.count
+        counts: FloatArray
+        if self._share >= 1.0:
+            counts = before + arrived
+            return counts
+        ways = np.hypot(*np.moveaxis(transition.pose - transition.previous_pose, -1, 0)[:2])
+        stood = before % 1.0 + self._share
+        stood = np.where(stood > 1.0 - ROUNDING, 1.0, stood)
+        counts = np.floor(before) + np.where(arrived & (ways < STILL).all(axis=1), stood, 0.0)
         return counts
