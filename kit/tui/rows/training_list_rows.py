@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from kit.document.blocks import Text
+from kit.document.blocks import Text, Tone, ToneText, labelled_table
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row
 from kit.document.tables import list_rows
@@ -16,6 +16,23 @@ if TYPE_CHECKING:
     from kit.learning.training.run_upkeep import RunOverview
 
 
+AFTERWARDS: Final = (
+    (
+        ToneText("while it trains", Tone.BOLD),
+        "Enter shows its curves and how its newest policy drives; leaving stops nothing.",
+    ),
+    (
+        ToneText("once it has", Tone.BOLD),
+        "e tests it on new episodes, k under disturbances, o compares the marked ones.",
+    ),
+    (
+        ToneText("where it drives", Tone.BOLD),
+        "Drive: c lets it drive. Levels: a races it. League: e enters it.",
+    ),
+)
+"""What can be done with a training, for whoever has none yet."""
+
+
 def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list[Row]:
     """Says how to start the first training, and lists the tasks, as far as there is room."""
     begin = (
@@ -23,9 +40,11 @@ def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list
     )
     from kit.learning.authoring.task_text import tasks_table
 
-    rows = rows_of([Text(begin), tasks_table(tasks)], Page(width=width - 2, margin=1))
+    page = Page(width=width - 2, margin=1)
+    rows = rows_of([Text(begin), tasks_table(tasks)], page)
+    after = [row(), *rows_of([labelled_table(AFTERWARDS)], page)]
     if len(rows) <= height:
-        return rows
+        return [*rows, *after] if len(rows) + len(after) <= height else rows
     return [*rows[: max(0, height - 1)], row((" ... and more: kit task list", "dim"))]
 
 

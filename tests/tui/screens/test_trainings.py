@@ -22,6 +22,7 @@ from kit.learning.training.run_folders import create_run, find_run, list_runs
 from kit.learning.training.run_upkeep import RunOverview
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training_sweep import TrainingSweep
+from kit.tui.rows.training_list_rows import AFTERWARDS
 from kit.tui.screens import trainings
 from kit.tui.screens.new_training import NewTrainingScreen, TrainingChoices
 from kit.tui.screens.trainings import TrainingsScreen
@@ -270,6 +271,18 @@ def test_where_there_is_room_the_chosen_run_drives_beside_the_list_or_below_it(f
         await until(pilot, lambda: not set(ROBOT) & set(text(pilot)), "the list alone")
 
     stage(lambda theme: TrainingsScreen(theme, folder), scene, size=(120, 36))
+
+
+@pytest.mark.parametrize(("size", "is_told"), [((80, 24), False), ((120, 35), True)], ids=str)
+def test_whoever_has_no_training_is_told_what_comes_after_where_there_is_room(
+    tmp_path: Path, size: tuple[int, int], is_told: bool
+) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "No trainings yet")
+        assert all((title.text in text(pilot)) is is_told for title, _ in AFTERWARDS)
+        assert ("more: kit task list" in text(pilot)) is not is_told
+
+    stage(lambda theme: TrainingsScreen(theme, tmp_path / "none"), scene, size=size)
 
 
 @pytest.mark.parametrize("size", [(120, 35), (200, 50)])
