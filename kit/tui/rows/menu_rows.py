@@ -6,11 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from kit.document.blocks import CellStyle, Column, Table, Tone, ToneText, labelled_table
 from kit.document.rows import Row, row, side_by_side
-from kit.document.tables import table_rows
-from kit.plain_text import counted, wrap
-from kit.tui.rows.ruled_title import ruled_title
+from kit.plain_text import wrap
 
 if TYPE_CHECKING:
     from kit.tui.student_store import StudentOverview
@@ -28,8 +25,6 @@ PICTURE: Final = 28
 PICTURE_ROWS: Final = 9
 TITLE: Final = 11
 """Columns of a line's title."""
-MOST_TRAININGS: Final = 3
-"""Running trainings that are named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +79,8 @@ def menu(
         rows += [row()]
     if overview is None or not overview.is_whole:
         return rows
+    from kit.tui.rows.today_rows import next_level_rows, today_rows, won_rows  # of no use to the first frame
+
     rows += today_rows(overview, width, room - len(rows))
     left = room - len(rows)
     if is_wide:
@@ -104,70 +101,6 @@ def _item_row(
         (f"{item.title:<{TITLE}}", style),
         (f" {status:<{room}}", style or "dim"),
     )
-
-
-def next_level_rows(overview: StudentOverview, picture: Sequence[str]) -> list[Row]:
-    """The first level without a medal, as a picture; nothing where all have one."""
-    if overview.next_level is None:
-        return []
-    name = overview.next_level.title
-    return [row(), row(" ", *ruled_title("next level", PICTURE - 1)), *(row(" ", each) for each in picture),
-            row("  ", (f"4  {name}", "dim"))]  # fmt: skip
-
-
-def today_rows(
-    overview: StudentOverview, width: int = PANEL_WIDTH - FRAME, room: int = WIDE_ROWS
-) -> list[Row]:
-    """What is open today: the day's maze, the next medal in reach, questions that are due, trainings that run; those for which
-    there is ``room``, in rows."""
-    if overview.problem:
-        return []
-    maze = "driven today" if overview.has_run_today else "not driven yet"
-    if overview.streak:
-        maze += f", {counted(overview.streak, 'day')} in a row"
-    lines = [("4", "maze", maze)]
-    if overview.next_medal:
-        lines.append(("4", "medal", overview.next_medal))
-    if overview.due:
-        lines.append(("7", "quiz", f"{counted(overview.due, 'question')} due"))
-    lines += [("5", "train", f"{name} is running") for name in overview.running[:MOST_TRAININGS]]
-    if len(overview.running) > MOST_TRAININGS:
-        lines.append(("", "", f"and {len(overview.running) - MOST_TRAININGS} more"))
-    table = labelled_table(
-        (ToneText(key, Tone.DIM), ToneText(word, Tone.DIM), text) for key, word, text in lines
-    )
-    rows = [row(" ", *ruled_title("today", width - 1))]
-    for entry in table_rows(table, width - MARGIN).entries:
-        if len(rows) + len(entry) <= room:
-            rows += [row(" " * MARGIN, *each) for each in entry]
-    return rows if len(rows) > 1 else []
-
-
-def won_rows(overview: StudentOverview, width: int = PANEL_WIDTH - FRAME, room: int = WIDE_ROWS) -> list[Row]:
-    """How many levels of each world of the game have a medal. Where there is not ``room``, in rows, for all worlds, those that
-    have all medals are left out first, then the last ones."""
-    worlds, most = overview.won, room - 2
-    if len(worlds) > most:
-        worlds = tuple(each for each in worlds if each[1] < each[2])[: max(0, most)]
-    if not worlds:
-        return []
-    total = f"{sum(won for _, won, _ in overview.won)} of {sum(count for *_, count in overview.won)}"
-    tones = [Tone.PLAIN if won else Tone.DIM for _, won, _ in worlds]
-    table = Table(
-        "medals",
-        "",
-        (Column("", CellStyle.TEXT), Column("")),
-        tuple(
-            (title, ToneText(f"{won} of {count:>2}", tone))
-            for (title, won, count), tone in zip(worlds, tones, strict=True)
-        ),
-    )
-    entries = table_rows(table, width - MARGIN).entries
-    return [
-        row(),
-        row(" ", *ruled_title("medals", width - 1, total)),
-        *(row(" " * MARGIN, *entry[0]) for entry in entries),
-    ]
 
 
 def _next_step_text(overview: StudentOverview | None) -> str:

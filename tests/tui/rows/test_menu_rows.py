@@ -8,7 +8,8 @@ import pytest
 
 from kit.document.rows import row_width
 from kit.school.game.levels import all_levels
-from kit.tui.rows.menu_rows import FRAME, MENU, PANEL_WIDTH, WIDE_PANEL, menu, today_rows, won_rows
+from kit.tui.rows.menu_rows import FRAME, MENU, PANEL_WIDTH, WIDE_PANEL, menu
+from kit.tui.rows.today_rows import today_rows, won_rows
 from kit.tui.student_store import StudentOverview
 from tests.tui.lesson_stage import row_text
 
