@@ -175,7 +175,7 @@ def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) 
         await pilot.press("space", "up", "enter")
         await seen(pilot, "step 2 of 5")
         await pilot.press("n", "escape")
-        await seen(pilot, "██")
+        await seen(pilot, "■■")
         await pilot.press("escape")
         await seen(pilot, "Lesson 2")
 
