@@ -181,6 +181,20 @@ CONTROLS: Final = (
         "school/game/league/test_league.py::test_who_renews_an_entry_keeps_its_name",
     ),
     Control(
+        "a program that is called an agent",
+        "kit/learning/policies/policy_node_text.py",
+        "    if (head, between, rest) != _template() or count not in map(_count_text, (None, *_goal_kinds())):\n",
+        "    if not learned:\n",
+        "school/game/league/test_league.py::test_an_agent_is_who_has_the_kits_node_of_one",
+    ),
+    Control(
+        "a program's drive in a file of drives by hand",
+        "kit/school/game/leaderboard.py",
+        "                    else other.driver is not each.driver is DriverKind.KEYS\n",
+        "                    else False\n",
+        "school/game/test_leaderboard.py::test_a_drive_of_a_program_is_none_by_hand",
+    ),
+    Control(
         "a link in the leaderboard's folder to a file of one's own",
         "kit/school/game/leaderboard.py",
         "write_atomically(_name_file(folder, os.getuid()), content, follows_links=False)",
