@@ -71,8 +71,8 @@ EDITOR_KEYS: Final = (
 )
 HIGH: Final = 45
 """Rows of a screen with room for all steps of a lesson."""
-LEAST_STEPS: Final = 5
-"""Steps that are listed at least."""
+LEAST_STEPS: Final = 2
+"""Steps that are listed at least: the one before that where one is, and that."""
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
@@ -266,7 +266,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         if (
             here is not None and self.room.height < HIGH
         ):  # where not all may have room, it begins shortly before that
-            first = max(0, min(here.number - 3, len(lesson.steps) - LEAST_STEPS))
+            first = max(0, min(here.number - 2, len(lesson.steps) - LEAST_STEPS))
         panels = [Panel("steps", (lesson_rows.steps_table(progress, here, first),))]
         with suppress(WorldError, FileNotFoundError):  # it is told where the glossary is opened
             panels += [Panel("words", words)] if (words := lesson_words(lesson.name)) else []

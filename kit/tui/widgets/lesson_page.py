@@ -34,7 +34,7 @@ LEAST_BESIDE: Final = 110
 
 ROOMY_SIZE: Final = (120, 30)
 """Columns and rows from which on the scene, the file and its log stand beside the words, all at once."""
-LEAST_ASIDE: Final = 40
+LEAST_ASIDE: Final = 36
 """Columns of the panels beside the words, at least."""
 COLUMNS_WIDTH: Final = 180
 """Columns from which on the file has a column of its own."""
