@@ -33,7 +33,7 @@ from kit.learning.training.run_check import check_reward
 from kit.plain_text import counted, wrap
 from kit.render.encode import ENCODERS
 from kit.render.world_text import scene_rows
-from kit.school.game.level_task import MEMORY, memory_steps, needs_memory, task_text
+from kit.school.game.level_task import MEMORY, SEED, memory_steps, needs_memory, task_text
 from kit.school.game.levels import GameLevel, UnknownLevel, find_level
 from kit.school.game.task_levels import race_command, race_refusals
 
@@ -97,7 +97,9 @@ def _new_of_level(name: str, level: GameLevel) -> None:
     file = write_task(name, task_text(level), Path(name, TASK_FILE))
     check_task(read_task(file))
     steps = memory_steps(level)
-    chosen = f" --algo {MEMORY}{f' --steps {steps}' if steps else ''}" if needs_memory(level) else ""
+    chosen = (
+        f" --algo {MEMORY}{f' --steps {steps} --seed {SEED}' if steps else ''}" if needs_memory(level) else ""
+    )
     messages.say(f"{file}: edit it, or train with it as it is:")
     click.echo(f"  kit train {name}{chosen} --name {name}")
     click.echo(f"  kit game race {level.command_name} --agent {name}")

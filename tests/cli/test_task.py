@@ -277,6 +277,9 @@ def test_a_new_task_of_a_level_says_the_way_to_its_race() -> None:
     assert "kit game race lying-wheels --agent mine" in told
     assert ": valid" in kit("task", "check", "mine").output
     assert "already exists" in kit("task", "new", "mine", "--level", "depot", code=2).output
+    assert (
+        "--steps 1500000 --seed 1 --name night" in kit("task", "new", "night", "--level", "long-night").output
+    )
     kit("task", "new", "three", "--level", "depot")
     assert "rad/s" not in kit("task", "show", "three").output
     assert "left-turn" in kit("task", "new", "other", "--level", "left-turm", code=2).output

@@ -49,6 +49,8 @@ EARNED: Final = MappingProxyType(
 
 MEMORY: Final = "recurrent-ppo"
 """The algorithm for agents that must remember."""
+SEED: Final = 1
+"""Of the training that was measured; where an agent must remember the rooms between docks, not every seed learns it."""
 EARNED_BY_DOCKS: Final = "progress: 1.0, achieving: 10.0, elapsed: -0.01, collided: -1.0, reached: 2.0"
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Final
 
 from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.policies.policy import Policy
@@ -12,11 +11,10 @@ from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.run_folders import create_run
 from kit.learning.training.training import train
-from kit.school.game.level_task import MEMORY, memory_steps, needs_memory, task_text
+from kit.school.game.level_task import MEMORY, SEED, memory_steps, needs_memory, task_text
 from kit.school.game.levels import GameLevel
 from kit.world.problems import WorldError
 
-SEED: Final = 1
 STEPS, MORE_STEPS = 600_000, 1_800_000
 """Of a training, and of the second one where the first agent has earned nothing, which also knows where it is. One with memory
 is trained once, for longer."""
