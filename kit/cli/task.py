@@ -44,7 +44,7 @@ def command() -> None:
 
     \b
     kit task new mine --from turn
-    kit task new mine --level depot  for an agent of your own on a level of the game
+    kit task new mine --level depot  to train for a level of the game
     kit task keys                    list all keys of a task file
     kit task check mine
     kit task show mine

@@ -14,7 +14,7 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 
 NEWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {
-        "start": ("0.2.0", "l opens the league: your programs and agents against everybody's."),
+        "start": ("0.2.0", "W, A, S and D drive the robot; l opens the league of programs."),
         "levels": ("0.2.0", "d is today's maze, the same for all; 2 is a game for two."),
         "lessons": ("0.2.0", "^E edits your program."),
     }

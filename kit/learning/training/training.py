@@ -316,12 +316,12 @@ class _TrainingLoop:
             self._last_returns.append(episode.reward)
 
     def _describe_missed_goal(self) -> str:
-        """What of the task's goal is not surely reached when all steps are done; empty where nothing is asked for."""
+        """What of the task's goal is not certain when all steps are done; empty where nothing is asked for."""
         goal = getattr(self._preset.stopping_rule, "goal", None)
         if goal is None or self._is_sure:
             return ""
         case, share = self._worst
-        return f", not surely {goal:g} in each case ({case} {share:.3f})"
+        return f", but {goal:g} in each case is not certain ({case} {share:.3f})"
 
     def _describe_cheat(self) -> str:
         """What the student's reward pays for missing the goal, where that is what has been learned; else empty."""

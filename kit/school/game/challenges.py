@@ -63,6 +63,17 @@ def answers_folder(workspace: Workspace) -> Path:
     return workspace.folder / "challenges"
 
 
+def starts_clock(journal: ProgressJournal, challenge: Challenge) -> bool:
+    """Whether a clock begins with the next look at a challenge. Raises ProgressError."""
+    return challenge.task.clock is not None and not _looks(journal, challenge)
+
+
+def _looks(journal: ProgressJournal, challenge: Challenge) -> list[float]:
+    """When a challenge with a clock was looked at, or its answer judged [s since the epoch]."""
+    subject = f"{PREFIX}{challenge.id}"
+    return [event.time.timestamp() for event in journal.events(EventKind.FINISH, subject)]
+
+
 def prepare_answer(
     journal: ProgressJournal, challenge: Challenge, folder: Path, now_s: float | None = None
 ) -> tuple[Path | None, float]:
@@ -74,11 +85,10 @@ def prepare_answer(
     file = challenge.task.prepare(folder / challenge.id, (challenge.written_task,))
     if challenge.task.clock is None:
         return file, math.inf
-    subject = f"{PREFIX}{challenge.id}"
     now = time.time() if now_s is None else now_s
-    begun = [event.time.timestamp() for event in journal.events(EventKind.FINISH, subject)]
+    begun = _looks(journal, challenge)
     if not begun:
-        journal.add(EventKind.FINISH, subject, {"medal": 0, "text": "begun"})
+        journal.add(EventKind.FINISH, f"{PREFIX}{challenge.id}", {"medal": 0, "text": "begun"})
     return file, max(0.0, now - begun[0]) if begun else 0.0
 
 

@@ -22,7 +22,7 @@ from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
 from kit.school.game.challenge import Challenge
-from kit.school.game.challenges import all_challenges, challenge_medals
+from kit.school.game.challenges import all_challenges, challenge_medals, starts_clock
 from kit.school.game.daily import DAILY_PREFIX, daily_level, streak, today
 from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts, load_unfinished
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
@@ -461,6 +461,8 @@ class LevelsScreen(RowsScreen[None]):
         from kit.tui.screens.puzzle import PuzzleScreen
 
         while (challenge := self.chosen_challenge) is not None and self.is_active and not self._doing:
+            if not await self._agrees_to_clock(challenge):
+                return
             title = next((each.title for each in self._challenges[self._at - len(self._found) + 1 :]), None)
             try:
                 is_played = challenge.task.board("") is not None
@@ -477,6 +479,17 @@ class LevelsScreen(RowsScreen[None]):
             # A repair's clock begins with the first look: nobody is taken there by the key for the next one.
             if screen.wish == "back" or (following and following.task.clock is not None):
                 return
+
+    async def _agrees_to_clock(self, challenge: Challenge) -> bool:
+        """Whether a challenge may be opened, asked where its clock begins with that."""
+        if challenge.task.clock is None or not starts_clock(self._progress, challenge):
+            return True
+        gold_s, _ = challenge.task.clock
+        choices = [
+            PickerItem("open", "open it", f"the clock starts; gold until {gold_s:.0f} s"),
+            PickerItem("leave", "not yet"),
+        ]
+        return await self.app.push_screen_wait(Picker(f"{challenge.title}: now?", choices)) == "open"
 
     @work(exclusive=True, group="drive")
     async def _drive_first(self, level: GameLevel) -> None:

@@ -108,7 +108,7 @@ def test_a_task_of_any_map_trains(name: str, tmp_path: Path) -> None:
     run = create_run(tmp_path, RunConfig(TaskSpec(str(task_file)), steps=20_000))
     ended = train(run)
     assert ended.how == "finished"
-    assert ended.reason.startswith("all steps are done, not surely")
+    assert ended.reason.startswith("all steps are done, but ")
     policy = run.policy()
     result = Evaluator(policy.trained_on.resolve()).test(policy, episodes=20, seed=1)
     assert all(case.episodes == 20 for case in result.cases)

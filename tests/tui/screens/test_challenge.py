@@ -242,6 +242,13 @@ def test_a_check_shows_what_it_does_and_ends_when_the_challenge_is_left(
         await until(pilot, lambda: pilot.app.screen is levels, "the list: a clock begins with the first look")
         assert [each for each in journal.events() if each.kind is not EventKind.NEWS] == []
         await pilot.press("enter")
+        await seen(pilot, "the clock starts; gold until 300 s")
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is levels, "the list: who looks away starts no clock")
+        assert [each for each in journal.events() if each.kind is not EventKind.NEWS] == []
+        await pilot.press("enter")
+        await seen(pilot, "the clock starts; gold until 300 s")
+        await pilot.press("enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, ChallengeScreen), "the challenge")
         await seen(pilot, "convoy.launch.py")
         await seen(pilot, " s; gold until ")
@@ -265,6 +272,9 @@ def test_every_challenge_fits(journal: ProgressJournal, tmp_path: Path, size: tu
             await seen(pilot, each.task_text.split()[-1])
             assert "c check" not in rows(pilot)[-1]
             await pilot.press("enter")
+            if each.task.clock is not None:
+                await seen(pilot, "the clock starts")
+                await pilot.press("enter")
             await until(pilot, lambda: isinstance(pilot.app.screen, ChallengeScreen), each.title)
             await until(pilot, lambda: "c check" in rows(pilot)[-1], "its keys")
             await pilot.press("escape")
@@ -288,6 +298,8 @@ def test_what_the_answer_is_about_stands_beside_the_page(
             number for number, each in enumerate(all_challenges()) if each is levels.chosen_challenge
         )
         await pilot.press(*choose(levels, RepairTask)[chosen:], "enter")
+        await seen(pilot, "the clock starts")
+        await pilot.press("enter")
         await seen(pilot, "def generate_launch_description")
         file = answer_file(tmp_path, levels.chosen_challenge or FIRST, "convoy.launch.py")
         file.write_text("# mended\n")

@@ -24,6 +24,7 @@ from kit.plain_files import open_plain_file
 from kit.plain_text import quoted, suggestion
 from kit.school.game.player_progress import CODE_ERRORS, bare_code
 from kit.school.game.race import DriverKind
+from kit.school.game.shared_sockets import user_name
 from kit.workspace import open_common_folder, write_atomically
 
 FOLDER: Final = "entries"
@@ -182,6 +183,14 @@ def withdraw(folder: Path, name: str) -> None:
     entry = find_entry(read_entries(folder), name)
     try:
         entry.file.unlink()
+    except PermissionError:
+        if entry.is_mine:
+            raise LeagueError(
+                f"{entry.file} cannot be removed: its folder is not yours to write in."
+            ) from None
+        raise LeagueError(
+            f"{quoted(name)} is an entry of {user_name(entry.user)}, who can withdraw it."
+        ) from None
     except OSError as error:
         raise LeagueError(f"{entry.file} cannot be removed ({error.strerror}).") from None
 

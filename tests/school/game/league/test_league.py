@@ -56,6 +56,7 @@ from kit.school.game.league.verification import differing_jobs
 from kit.school.game.levels import find_level
 from kit.school.game.race import DriverKind, RaceFinish, race_controller
 from kit.school.game.shared_drives import digest_of, share_drives
+from kit.school.game.shared_sockets import user_name
 from kit.school.game.starts import OWN_SEED, STARTS
 from kit.school.game.two_players import TAG_SECONDS
 from kit.workspace import open_workspace
@@ -242,6 +243,21 @@ def test_a_lone_entrant_drives_nothing_and_nobody_is_champion(tmp_path: Path) ->
         assert all(level.title in told for level in levels)
         assert "kit league submit" in told
         submit(league.folder, "laser", LASER)
+
+
+def test_anothers_entry_is_withdrawn_by_nobody_and_told_as_such(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    league = make_league(tmp_path, laser=LASER)
+    own = os.getuid()
+
+    def refuse(self: Path, missing_ok: bool = False) -> None:
+        raise PermissionError(1, "Operation not permitted", str(self))
+
+    monkeypatch.setattr(Path, "unlink", refuse)
+    monkeypatch.setattr(os, "getuid", lambda: own + 1)
+    with pytest.raises(LeagueError, match=f"an entry of {user_name(own)}"):
+        withdraw(league.folder, "laser")
 
 
 def test_who_withdraws_takes_the_matches_along_and_a_new_program_drives_anew(driven: League) -> None:
