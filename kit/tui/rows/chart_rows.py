@@ -28,9 +28,9 @@ def laser_chart(laser: Sequence[float], width: int) -> list[Row]:
     return _bar_rows(heights, max(heights, default=0.0) or 1.0, CHART_ROWS, "m")
 
 
-def time_chart(values: Sequence[float], width: int, least: float) -> list[Row]:
+def time_chart(values: Sequence[float], width: int, least: float, rows: int = CHART_ROWS) -> list[Row]:
     """The newest values on the right, from the middle row up and down where some are negative."""
-    room, rows = width - CHART_LABEL, CHART_ROWS
+    room = width - CHART_LABEL
     shown = list(values)[-room * 2 :]
     # Two samples to a character where there are many.
     paired = [max(shown[i : i + 2], key=abs) for i in range(0, len(shown), 2)] if len(shown) > room else shown

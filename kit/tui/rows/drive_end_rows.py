@@ -13,7 +13,7 @@ from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.tui.rows.chart_rows import CHART_LABEL, time_chart
+from kit.tui.rows.chart_rows import CHART_LABEL, CHART_ROWS, time_chart
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import NO_STAR, STAR
@@ -21,6 +21,8 @@ from kit.tui.rows.ruled_title import ruled_title
 
 LEAST_LEAD: Final = 0.5
 """Of a chart's scale [s]."""
+HIGHEST_LEAD: Final = 15
+"""Rows of a chart."""
 RUN_OF_THE_DAY: Final = "this run counts; what follows is practice"
 MARK: Final = 5
 """Columns of a star before what it is for."""
@@ -95,14 +97,15 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
     ]
 
 
-def lead_rows(leads: Sequence[float], width: int) -> list[Row]:
-    """A chart of how far ahead of the reference a drive was [s], from its beginning to its end."""
+def lead_rows(leads: Sequence[float], width: int, room: int) -> list[Row]:
+    """A chart of how far ahead of the reference a drive was [s], from its beginning to its end, as high as ``room`` rows allow."""
     bars = width - CHART_LABEL
     if len(leads) < 2:
         return []
     shown = [leads[min(len(leads) - 1, bar * len(leads) // bars)] for bar in range(bars)]
     title = ruled_title("ahead of the reference", width - MARGIN, "s, down is behind")
-    return [row(" ", *each) for each in (title, *time_chart(shown, width, LEAST_LEAD))]
+    rows = min(HIGHEST_LEAD, max(CHART_ROWS, (room - 2) // 2 * 2 + 1))  # an odd number: zero is in the middle
+    return [row(" ", *each) for each in (title, *time_chart(shown, width, LEAST_LEAD, rows))]
 
 
 def needed_rows(bins: Sequence[HistogramBin], unit: str = "s", decimals: int = 2) -> list[Row]:

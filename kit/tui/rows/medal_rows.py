@@ -29,6 +29,9 @@ DISC: Final = (
     "    ▀▀█████▀▀",
 )
 SPARK_SIGNS: Final = "*.+'"
+DISC_COLUMNS, SPARK_COLUMNS = 18, 6
+DRAWN_COLUMNS: Final = 4 + DISC_COLUMNS + SPARK_COLUMNS
+"""Of a drawn medal, with the room around it."""
 
 
 def medal_drawing(medal: Medal, height: int, spark: int = 0) -> list[Row]:
@@ -42,9 +45,9 @@ def medal_drawing(medal: Medal, height: int, spark: int = 0) -> list[Row]:
     for number, (line, style) in enumerate(drawn):
         sparks = "".join(
             SPARK_SIGNS[(number + column) % len(SPARK_SIGNS)]
-            if (7 * column + 5 * number + 3 * spark) % 11 < 2
+            if spark and (7 * column + 5 * number + 3 * spark) % 11 < 2
             else " "
-            for column in range(30 if spark else 0)
+            for column in range(SPARK_COLUMNS)
         )
-        rows.append(row((f"   {line:<18}", style), (sparks, "warn")))
-    return [*rows, row()]
+        rows.append(row((f"   {line:<{DISC_COLUMNS}}", style), (sparks, "warn")))
+    return [*rows, row(" " * DRAWN_COLUMNS)]

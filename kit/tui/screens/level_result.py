@@ -19,7 +19,7 @@ from textual.screen import ModalScreen
 
 from kit.arrays import FloatArray
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import MARGIN, Row, broken, row
+from kit.document.rows import MARGIN, Row, broken, row, row_width, side_by_side
 from kit.render.role_looks import PEN_ROLES
 from kit.render.roles import Role
 from kit.render.scene import PenStroke, Scene, ScenePath
@@ -39,7 +39,7 @@ from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
-from kit.tui.rows.medal_rows import medal_drawing
+from kit.tui.rows.medal_rows import DRAWN_COLUMNS, medal_drawing
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, scene_of
@@ -133,9 +133,9 @@ class DriveResultScreen(ModalScreen[Wish]):
             *drive_end_rows.sector_rows(result.splits),
         ]
         self._photo_finish = photo_finish(result)
-        self._lead: list[Row] = []
-        """How far ahead of the reference it was on its way, once that is known."""
-        self._after_finish = drive_end_rows.won_besides(result.level, record)
+        self._leads: list[float] = []
+        """How far ahead of the reference it was on its way [s], once that is known."""
+        self._won = drive_end_rows.won_besides(result.level, record)
         self._needed: list[Row] = []
         """What all players needed, once that is known."""
         self._shown = 0
@@ -184,7 +184,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         seconds = await to_thread(seconds_needed, result.level, result.driver)
         was_all_shown = self._shown >= len(self._revealed)
         self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds))
-        self._lead = await to_thread(lead_over_reference, result)
+        self._leads = await to_thread(leads_over_reference, result)
         if was_all_shown:
             self._shown = len(self._revealed)
         self._show()
@@ -206,7 +206,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         self.set_class(width >= WIDE, "-wide")
         self.set_class(False, "-high")
         self.set_class(False, "-beside")
-        rows = len(self._fixed) + len(self._revealed) + len(self._medal) + ROWS_AROUND
+        rows = len(self._fixed) + len(self._above) + len(self._revealed) + ROWS_AROUND
         is_high = width < WIDE and height >= rows + LEAST_MAP_ROWS
         self.set_class(is_high, "-high")
         self.set_class(NARROW <= width < WIDE and not is_high, "-beside")
@@ -221,14 +221,31 @@ class DriveResultScreen(ModalScreen[Wish]):
         return medal_drawing(self._result.record.medal, self.app.size.height, self._spark)
 
     @property
+    def _above(self) -> list[Row]:
+        """The medal where a map stands beside the text: elsewhere the text stands beside the medal."""
+        return self._medal if self.has_class("-beside") else []
+
+    @property
     def _earned(self) -> list[Row]:
-        width = LEFT if self.has_class("-beside") else WIDTH
+        width = LEFT if self.has_class("-beside") or self._medal else WIDTH
         return drive_end_rows.earned(self._result.level, self._result.finish, self._result.record, width)
+
+    @property
+    def _is_won_beside(self) -> bool:
+        """Whether what was won besides has room beside a small map."""
+        count = len(self._earned) + len(self._times) + len(self._won)
+        has_room = count <= MOST_BESIDE_ROWS and all(row_width(each) <= LEFT for each in self._won)
+        return self.has_class("-beside") and has_room
+
+    @property
+    def _after_finish(self) -> list[Row]:
+        """What was won besides, where it stands below."""
+        return [] if self._is_won_beside else self._won
 
     @property
     def _beside_map(self) -> list[Row]:
         """The rows that a small map stands beside."""
-        rows = [*self._earned, *self._times]
+        rows = [*self._earned, *self._times, *(self._won if self._is_won_beside else [])]
         below = len(self._ladder) + len(self._after_finish)
         room = self._room - below
         if room - len(self._photo_finish) >= max(LEAST_BESIDE_ROWS, len(rows)):
@@ -239,23 +256,27 @@ class DriveResultScreen(ModalScreen[Wish]):
     def _before_finish(self) -> list[Row]:
         if self.has_class("-beside"):
             return [*self._beside_map, *self._ladder]
+        if medal := self._medal:
+            rows = [*self._earned, *self._times]
+            return [*rows, *[row()] * (len(medal) - len(rows)), *self._ladder]
         return [*self._earned, *self._ladder, *self._times]
 
     @property
     def _revealed(self) -> list[Row]:
         """The rows that appear one after the other; without the photo finish, and then what others needed, where they would
         push others off the screen."""
-        finish, needed, lead = self._photo_finish, self._needed, self._lead
-        for more in ([*finish, *self._after_finish, *needed, *lead], [*finish, *self._after_finish, *needed]):
-            if len(self._before_finish) + len(more) <= self._room:
-                return [*self._before_finish, *more]
-        rows = [*self._before_finish, *self._after_finish, *needed]
-        return rows if len(rows) <= self._room else [*self._before_finish, *self._after_finish]
+        before, finish, needed = self._before_finish, self._photo_finish, self._needed
+        rows = [*before, *finish, *self._after_finish, *needed]
+        if (room := self._room - len(rows)) >= 0:
+            lead = drive_end_rows.lead_rows(self._leads, WIDTH - MARGIN, room)
+            return [*rows, *lead] if len(lead) <= room else rows
+        rows = [*before, *self._after_finish, *needed]
+        return rows if len(rows) <= self._room else [*before, *self._after_finish]
 
     @property
     def _room(self) -> int:
         """Rows for what appears."""
-        return self.app.size.height - len(self._fixed) - len(self._medal) - ROWS_AROUND
+        return self.app.size.height - len(self._fixed) - len(self._above) - ROWS_AROUND
 
     @property
     def _unavailable(self) -> list[str]:
@@ -269,7 +290,10 @@ class DriveResultScreen(ModalScreen[Wish]):
         revealed, without = self._revealed, self._unavailable
         keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         hidden = [row()] * max(0, len(revealed) - self._shown)  # what is below keeps its place
-        rows = [*self._fixed, *self._medal, *revealed[: self._shown], *hidden, self._note]
+        rows = [*revealed[: self._shown], *hidden]
+        if medal := self._medal if not self._above else []:
+            rows = [*side_by_side(medal, rows[: len(medal)], DRAWN_COLUMNS), *rows[len(medal) :]]
+        rows = [*self._fixed, *self._above, *rows, self._note]
         for text in self.query(TextRows):  # none where the kit is left meanwhile
             text.show([keys] if text.id == "keys" else rows)
 
@@ -354,13 +378,14 @@ def scene_of_drive(result: DriveResult) -> Scene:
     return replace(scene, paths=tuple(ghost_paths(reference)), strokes=strokes)
 
 
-def lead_over_reference(result: DriveResult) -> list[Row]:
-    """A chart of how far ahead of the reference a drive was on its way; none without a reference."""
+def leads_over_reference(result: DriveResult) -> list[float]:
+    """How far ahead of the reference a drive was on its way [s]; nothing without a reference."""
     reference = _reference_of(result)
     if reference is None:
         return []
     gains = gains_along(_own_track(result), result.recording.step_size, reference)[:, 4]
-    return drive_end_rows.lead_rows(np.nancumsum(gains).tolist(), WIDTH - MARGIN)
+    leads: list[float] = np.nancumsum(gains).tolist()
+    return leads
 
 
 def _reference_of(result: DriveResult) -> Ghost | None:

@@ -562,7 +562,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
         await pilot.press("enter")
         await pilot.pause()
         await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._revealed))
-        shown_rows = len(dialog._revealed) + len(dialog._fixed) + len(dialog._medal) + ROWS_AROUND
+        shown_rows = len(dialog._revealed) + len(dialog._fixed) + len(dialog._above) + ROWS_AROUND
         assert shown_rows <= size[1]
         assert dialog.has_class("-wide") is (size[0] >= WIDE)
         await wait_until_shown(pilot, lambda: dialog._world._scene is not None)
