@@ -461,10 +461,10 @@ class LevelsScreen(RowsScreen[None]):
         from kit.tui.screens.puzzle import PuzzleScreen
 
         while (challenge := self.chosen_challenge) is not None and self.is_active and not self._doing:
-            if not await self._agrees_to_clock(challenge):
-                return
             title = next((each.title for each in self._challenges[self._at - len(self._found) + 1 :]), None)
             try:
+                if not await self._agrees_to_clock(challenge):
+                    return
                 is_played = challenge.task.board("") is not None
                 kind = PuzzleScreen if is_played else ChallengeScreen
                 screen = kind(self._theme, challenge, self._progress, self._workspace, title)
@@ -481,7 +481,7 @@ class LevelsScreen(RowsScreen[None]):
                 return
 
     async def _agrees_to_clock(self, challenge: Challenge) -> bool:
-        """Whether a challenge may be opened, asked where its clock begins with that."""
+        """Whether a challenge may be opened, asked where its clock begins with that. Raises ProgressError."""
         if challenge.task.clock is None or not starts_clock(self._progress, challenge):
             return True
         gold_s, _ = challenge.task.clock

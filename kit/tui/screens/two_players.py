@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from asyncio import to_thread
-from typing import Any
+from typing import Any, Final
 
 from textual.app import App
 
@@ -26,13 +26,13 @@ from kit.tui.theme import Theme
 from kit.workspace import Workspace
 from kit.world.problems import WorldError
 
-HOSTED = {
+HOSTED: Final = {
     f"{mode.value} {whom}": (mode, Audience(everybody=whom == "all"))
     for mode in (SharedMode.TAG, SharedMode.RACE)
     for whom in ("all", "own")
 }
 """The games that can be hosted, by the key of their line."""
-WHO_MAY_JOIN = {
+WHO_MAY_JOIN: Final = {
     "all": "all users of this machine may join",
     "own": "from another terminal of your own",
 }
@@ -52,18 +52,9 @@ async def play_together(app: App[Any], theme: Theme, level: GameLevel, workspace
             client = await to_thread(SharedGameClient, games[picked], own_user_name(), plays=True)
             await app.push_screen_wait(SharedGuestScreen(theme, client, workspace))
         elif picked is not None:
-            await _host(
-                app,
-                SharedHostScreen(
-                    theme,
-                    level,
-                    HOSTED[picked][0],
-                    own_user_name(),
-                    games_folder(),
-                    HOSTED[picked][1],
-                    workspace,
-                ),
-            )
+            mode, audience = HOSTED[picked]
+            name, folder = own_user_name(), games_folder()
+            await _host(app, SharedHostScreen(theme, level, mode, name, folder, audience, workspace))
     except (SharedGameError, CannotShare, UnknownLevel, LookupError, WorldError, OSError) as error:
         app.push_screen(MessageDialog("No game for two", str(error)))
 
