@@ -21,6 +21,8 @@ from kit.ros.graph.topic_statistics import FieldSample, FlowStats, MessageFlow
 
 INDENT: Final = 2
 """Columns by which the fields of a field are indented."""
+FOLDS: Final = (40, 60, 80)
+"""Columns to which a message may be folded where that gives rows enough for all of it."""
 MARKED: Final = "key"
 """The style of the field that is chosen in a message."""
 
@@ -71,9 +73,16 @@ def rates(flow_stats: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
 
 
 def about(
-    spot: GraphElement | None, heard: GraphUpdate, width: int, *, full: bool = False, field: str = ""
+    spot: GraphElement | None,
+    heard: GraphUpdate,
+    width: int,
+    *,
+    full: bool = False,
+    field: str = "",
+    room: int = 0,
 ) -> tuple[Row, ...]:
-    """What is known of a topic, a service or a node, its name first. ``full``: all of it, however many rows.
+    """What is known of a topic, a service or a node, its name first. ``full``: all of it, however many rows; else a message is
+    folded as little as ``room`` rows allow.
     ``field``: the one that is marked in the message."""
     if spot is None:
         return (row(("no nodes", "dim")),)
@@ -86,7 +95,7 @@ def about(
     else:
         service = next((service for service in heard.state.services if service.name == name), None)
         head = () if service is None else tuple(_service_rows(service))
-    return (*head, *_newest_message_rows(heard.message_of(spot), width, full, field))
+    return (*head, *_newest_message_rows(heard.message_of(spot), width, full, field, room - len(head)))
 
 
 @cache
@@ -159,11 +168,17 @@ def _node_rows(node: str, state: GraphState, full: bool) -> Iterator[Row]:
             yield row((f"{word:<12}", "dim"), ", ".join(names))
 
 
-def _newest_message_rows(message: Message | None, width: int, full: bool, field: str) -> Iterator[Row]:
+def _newest_message_rows(
+    message: Message | None, width: int, full: bool, field: str, room: int
+) -> Iterator[Row]:
     if message is None:
         yield row(("no message yet since it was chosen", "dim"))
         return
-    for path, text in message_field_rows(message, width, compact=not full):
+    for fold in (width,) if full else (*(each for each in FOLDS if each < width), width):
+        rows = message_field_rows(message, fold, compact=not full)
+        if len(rows) <= room:
+            break
+    for path, text in rows:
         yield row((text, MARKED if field and path == field else PLAIN))
 
 

@@ -296,10 +296,12 @@ class GraphScreen(RowsScreen[None]):
         field = self._shown_field() if self._shows_details else ""
         means = self._definition(heard, width)
         column = width // 2 if means else width
-        head, *words = ruled(about(self._chosen, heard, column, full=full, field=field), self._rule, width)
+        room = self._rows("about").size.height
+        told = about(self._chosen, heard, column, full=full, field=field, room=room)
+        head, *words = ruled(told, self._rule, width)
         words = side_by_side(words, means, column) if means else words
         self._about_rows = len(words) + 1
-        room = self._rows("about").size.height - 1
+        room -= 1
         marked = [
             number
             for number, parts in enumerate(words)

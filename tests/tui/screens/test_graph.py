@@ -123,9 +123,9 @@ def test_the_screen_at_eighty_columns() -> None:
         assert rows(screen)[5:10] == [
             "── /scan  sensor_msgs/msg/LaserScan ────────────────────────────────────────────",
             "from /robot  to /driver",
-            "header: {stamp: {sec: 0, nanosec: 0}, frame_id: ''}",
-            "angle_min: 0.0",
-            "angle_max: 0.0",
+            "header:",
+            "  stamp: {sec: 0, nanosec: 0}",
+            "  frame_id: ''",
         ]
         keys = "arrows choose Enter message / filter a all t tidy ? help Esc back ^P more"
         assert rows(screen)[-1] == keys
