@@ -46,7 +46,7 @@ def lesson_counts(shelf: Sequence[LessonEntry]) -> list[Row]:
     exercises = [(each, one.name) for each in readable for one in each.lesson.exercises]
     passed = sum(name in each.passed_exercises for each, name in exercises)
     return [
-        row(f"  {sum(each.is_completed for each in readable)} of {len(shelf)} done"),
+        row(f"  {sum(each.is_completed for each in readable)} of {len(shelf)} lessons"),
         row(f"  {passed} of {len(exercises)} exercises passed"),
         *(row((f"  {line}", "dim")) for line in STARS_LEGEND),
     ]

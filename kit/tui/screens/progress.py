@@ -78,7 +78,7 @@ class ProgressScreen(SectionsScreen):
         if told.badges:
             parts.append(section_of("badges", told.badges, columns))
         parts.append(section("export your progress", export_rows(told.workspace), columns))
-        counts = section("lessons", lesson_counts(told.shelf), columns)
+        counts = section("done so far", lesson_counts(told.shelf), columns)
         return [
             *parts,
             counts,
