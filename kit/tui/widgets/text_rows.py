@@ -71,6 +71,8 @@ _ASCII: Final = str.maketrans(
         "█": "#",
         "▒": "x",
         "░": ".",
+        "■": "#",
+        "□": "x",
         **dict.fromkeys("┌┐└┘┬┴├┤┼", "+"),
         **dict.fromkeys("▁▂▃", "."),
         **dict.fromkeys("▄▅▆", ":"),
