@@ -131,7 +131,7 @@ def daily_level(day: datetime.date) -> GameLevel:
         title=f"The maze of {day.isoformat()}{' in fog' if fog else ''}",
         map_name=base.map_name,
         case=base.case,
-        hint="To the target, by the shortest way. The first run counts, also if you leave it.",
+        hint="To the target, by the shortest way.",
         opened_by=(),
         row=0,
         story="A new maze every day, the same for everybody.",

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from kit.document.rows import Row, row
+from kit.school.game.daily import DAILY_PREFIX
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
 from kit.school.game.medal import RUNGS, Medal, medal_time, rung_in_reach
@@ -197,12 +198,18 @@ def before_the_start(
     raced. ``ghosts``: letter, driver and time of each; those are shown for which there is room. ``is_practice``: of the day's
     level, whose first run has counted."""
     start = " The clock starts with your first key."
-    if is_practice:
-        start += " Practice: today's run has counted."
+    if level.id.startswith(DAILY_PREFIX):
+        start += (
+            " Practice: today's run has counted."
+            if is_practice
+            else " This run counts, also if you leave it."
+        )
     if task_in_sight:
         return [row((start, "bold")), row((_listed(ghosts, " You race: ", width), "dim"))]
+    hint = f" {level.hint}"
     raced = _listed(ghosts, "  You race: ", width - len(start))
-    return [row((start, "bold"), (raced, "dim")), row(f" {level.hint}")]
+    below = "" if raced else _listed(ghosts, "  You race: ", width - len(hint))
+    return [row((start, "bold"), (raced, "dim")), row(hint, (below, "dim"))]
 
 
 def _listed(items: Sequence[str], lead: str, width: int) -> str:

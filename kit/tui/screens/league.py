@@ -296,7 +296,8 @@ class LeagueScreen(RowsScreen[None]):
             return
         finally:
             self._is_running = False
-        await self._read_now("All matches are driven." if not keys else f"{len(keys)} were driven.")
+        idle = "All matches are driven." if len(self._entrants) > 1 else "A match needs two entrants."
+        await self._read_now(f"{len(keys)} were driven." if keys else idle)
 
     def _show_count(self, done: int, count: int) -> None:
         self._show_note(f"Driving: {done} of {count}.")
