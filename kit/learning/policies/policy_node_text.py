@@ -42,7 +42,7 @@ def learned_constants(text: str) -> Mapping[str, Any] | None:
         return None
     try:
         found = {
-            each.targets[0].id: ast.literal_eval(each.value)  # type: ignore[attr-defined]
+            each.targets[0].id: ast.literal_eval(each.value)  # type: ignore[attr-defined]  # else caught below
             for each in ast.parse(learned).body
         }
     except (AttributeError, SyntaxError, ValueError, TypeError, RecursionError, MemoryError):

@@ -15,6 +15,7 @@ from kit.geometry import Pose
 from kit.learning.maps.batch_map import load_batch_map
 from kit.learning.tasks.goals.goal import CaseTargets
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel
+from kit.school.game.race import DOCK_RADIUS, DOCK_TIME
 from kit.school.game.references import reference_seconds
 
 STEP_S: Final = 0.2
@@ -23,8 +24,8 @@ LONGEST: Final = 2.2
 """So many times as long as the reference drive an episode may take."""
 PAIR_TURN: Final = 1.0
 """Of each of two robots [rad/s]."""
-STAY_S, AT_DOCK_M = 1.2, 0.2
-"""For so long, a little longer than a battery needs, a robot stands so near a dock."""
+STAY_S, AT_DOCK_M = DOCK_TIME + STEP_S, 0.8 * DOCK_RADIUS
+"""For so long, a step longer than a battery needs, a robot stands so near a dock."""
 TWO_WHEELS: Final = ("forward", "back", "left", "right", "forward_left", "forward_right")
 TRICYCLE: Final = ("forward", "back", "back_left", "back_right", "forward_left", "forward_right")
 PAIR: Final = ("stop", "forward", "back", "forward_left", "forward_right", "left", "right")

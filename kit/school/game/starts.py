@@ -92,6 +92,13 @@ def scenario_from(level: GameLevel, seed: int) -> Scenario:
     return scenario
 
 
+def film_scenario(level: GameLevel, seed: int) -> Scenario:
+    """The scenario of a drive as its film shows it, under the level's title. Raises as ``scenario_from``."""
+    scenario = scenario_from(level, seed)
+    case = None if scenario.case is None else replace(scenario.case, name=level.title)
+    return replace(scenario, case=case)
+
+
 def _draw_pair(scenario: Scenario, random: np.random.Generator) -> tuple[Scenario, Scenario]:
     """Two scenarios whose starts lie on opposite sides of the scenario's own."""
     phase = float(random.uniform(0.0, 2.0))
@@ -107,13 +114,6 @@ def _disturb(scenario: Scenario, phase: float, veer: float) -> Scenario:
     """The scenario with noise on its lasers, its carts on their way since ``phase`` and robots that do not go straight."""
     models = tuple(_disturb_model(model, phase, veer) for model in scenario.world.models)
     return replace(scenario, world=replace(scenario.world, models=models))
-
-
-def film_scenario(level: GameLevel, seed: int) -> Scenario:
-    """The scenario of a drive as its film shows it, under the level's title. Raises as ``scenario_from``."""
-    scenario = scenario_from(level, seed)
-    case = None if scenario.case is None else replace(scenario.case, name=level.title)
-    return replace(scenario, case=case)
 
 
 def _disturb_model(model: Model, phase: float, veer: float) -> Model:

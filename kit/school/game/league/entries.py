@@ -1,9 +1,8 @@
 """The entries of a league: a folder with one program for each entrant, named after it.
 
 An agent enters as the ROS 2 node that it would be on a robot, so a match runs programs alone, and is known by that program, not by
-what anybody says of it. A file belongs to who has put it
-there; in a class's folder nobody can replace or remove another's. Whose name is whose, the league's owner records with each run, so
-that who renews an entry keeps its name.
+what anybody says of it. A file belongs to who has put it there; in a class's folder nobody can replace or remove another's. Whose
+name is whose, the league's owner records with each run, so that who renews an entry keeps its name.
 """
 
 from __future__ import annotations
