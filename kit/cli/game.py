@@ -494,6 +494,8 @@ def _record_drive(
         click.echo("Practice: the first run of the day has counted.")
     elif level.has_medals:
         click.echo(f"  {record.medal.title}")
+    if finish.reached and level.ending:
+        click.echo(level.ending)
     for rule in record.rules:
         click.echo(f"  {STAR} {rule.description(level)}")
     if record.previous_best is not None and finish.reached:

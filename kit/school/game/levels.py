@@ -140,7 +140,9 @@ class GameLevel:
     world: str = ""
     """Id of its world."""
     story: str = ""
-    """One sentence."""
+    """Who needs this drive, and why: two rows of a small screen."""
+    ending: str = ""
+    """What came of it, told once the goal is reached; as long at most, or empty."""
     skill: str = ""
     """The skill without which it is not finished."""
     opened_by_lesson: str = ""
@@ -304,6 +306,7 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
         row=row,
         world=each.name("world"),
         story=each.text("story"),
+        ending=each.text("ending"),
         skill=each.text("skill"),
         opened_by_lesson=each.text("lesson", ""),
         time_limit=each.number("time_limit", 60.0, above=0, maximum=3600),

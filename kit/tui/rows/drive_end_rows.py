@@ -42,6 +42,11 @@ def finish_sentence(finish: RaceFinish) -> str:
     return f"The goal was not reached in {finish.seconds:.0f} s{shortfall}."
 
 
+def ending(level: GameLevel, finish: RaceFinish, width: int) -> list[Row]:
+    """What came of a drive that has reached its goal, in the level's story."""
+    return [row(f"   {each}") for each in wrap(level.ending, width) if each and finish.reached]
+
+
 def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord, width: int) -> list[Row]:
     """The medal and the stars of a drive, in the order in which they appear, in rows of at most ``width`` columns."""
     if record.is_shipped:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from kit.document.rows import Row, row
+from kit.plain_text import wrap
 from kit.school.game.daily import DAILY_PREFIX
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
@@ -117,8 +118,11 @@ def world_levels(
 def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | None, width: int) -> list[Row]:
     """What the chosen level asks for, and how it was driven. ``width``: of the screen, which the ladders are fitted to."""
     level = progress.level
+    lead = f"{level.title}  "
+    first, *rest = wrap(level.story, width, first=" " * len(lead))
     rows = [
-        row((level.title, "bold"), f"  {level.story}"),
+        row((lead, "bold"), first.lstrip()),
+        *map(row, rest),
         row(("task   ", "dim"), level.hint),
         row(
             ("skill  ", "dim"),

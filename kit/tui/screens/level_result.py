@@ -239,8 +239,11 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     @property
     def _after_finish(self) -> list[Row]:
-        """What was won besides, where it stands below."""
-        return [] if self._is_won_beside else self._won
+        """How the level's story ends, where there is room for that, and what was won besides, where it stands below."""
+        won = [] if self._is_won_beside else self._won
+        ending = drive_end_rows.ending(self._result.level, self._result.finish, WIDTH - MARGIN)
+        count = len(self._earned) + len(self._times) + len(self._ladder) + len(ending) + len(won)
+        return [*ending, *won] if count <= self._room else won
 
     @property
     def _beside_map(self) -> list[Row]:

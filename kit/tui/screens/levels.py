@@ -60,7 +60,7 @@ from kit.workspace import Workspace
 if TYPE_CHECKING:
     from kit.learning.policies.policy import Policy
 
-ABOUT_ROWS: Final = 6
+ABOUT_ROWS: Final = 7
 ABOUT_COLUMN: Final = 92
 """The column from which on a level's card stands beside what is said of it, where there is room."""
 MAP_WIDTH: Final = 84

@@ -12,6 +12,7 @@ import pytest
 
 from kit.geometry import Pose, wrap_angle
 from kit.msg.nav_msgs import Odometry
+from kit.plain_text import wrap
 from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, all_worlds, find_level
@@ -51,9 +52,12 @@ def test_every_level_has_a_reference_a_world_and_a_lesson() -> None:
     assert {level.world for level in LEVELS} == {world.id for world in all_worlds()}
     assert {level.opened_by_lesson for level in LEVELS} == set(lesson_names()), "each lesson opens a level"
     for level in LEVELS:
-        for text in (level.story, level.skill, level.hint):
+        for text in (level.skill, level.hint):
             assert text
             assert len(text) <= 78
+        for text in (level.story, level.ending):
+            assert text
+            assert len(wrap(text, 78 - len(level.title))) <= 2, "it stands beside the title on a small screen"
 
 
 @pytest.mark.parametrize("driver", DriverKind)
