@@ -234,6 +234,8 @@ class Launch:
         """
         self._carry_out(self._launch_file.start())
         self._start_waiting(is_builtin)
+        if not (self._started or self.world or self.has_programs or self.has_timers):
+            self._log(f"{self.target.file.name} starts no program: its LaunchDescription has no Node.")
 
     def start_processes(self) -> None:
         """Starts the requested processes and waits until they are in the graph. Raises ProcessStartError."""

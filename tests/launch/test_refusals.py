@@ -181,6 +181,12 @@ def test_several_launch_files_must_be_chosen_from(launch: Launched, workshop: Wo
     assert code == 0
 
 
+def test_a_launch_file_that_starts_nothing_says_so(launch: Launched, workshop: Workshop) -> None:
+    out, _, code = launch(workshop.package("hollow", ""), "--plain")
+    assert "hollow.launch.py starts no program" in out
+    assert code == 0
+
+
 def children(pid: int) -> list[int]:
     """A process's descendants."""
     found = []

@@ -87,6 +87,7 @@ BETWEEN_FRAMES: Final = 0.02
 """For so long nothing comes between two frames [s]."""
 LONGEST_FRAME: Final = 3.0
 """After which a picture is taken all the same [s]."""
+LESSONS: Final = Path(__file__).parents[2] / "lessons"
 VISITS: Final = {
     "start": ScreenVisit(),
     "drive": ScreenVisit(("play", "maze", "--controller", "random_walk"), (), 9.0),
@@ -121,6 +122,24 @@ VISITS: Final = {
     "league": ScreenVisit(keys=("l",), seconds=3.0),
     "help": ScreenVisit(("play", "simple"), ("?",)),
     "keys": ScreenVisit(("keys",)),
+    "map-drawing": ScreenVisit(("maps", "new", "hall"), ("\x1b[B" * 4 + "\x1b[C" * 9,)),
+    "photo-corners": ScreenVisit(
+        (
+            "maps",
+            "from-photo",
+            f"{LESSONS}/35-photo-to-map/sheet/starter/plan.jpg",
+            "sheet",
+            "--width",
+            "5",
+            "--click",
+        )
+    ),
+    "launch": ScreenVisit(
+        ("launch", f"{LESSONS}/33-a-real-workspace/layout/starter/ros2_ws/src/scout_bringup"), (), 6.0
+    ),
+    "two-players": ScreenVisit(("game", "host", "two-doors", "--tag")),
+    "trainings": ScreenVisit(("runs",)),
+    "replay": ScreenVisit(("game", "replay", "left-turn"), ("r",), 2.0),
 }
 
 

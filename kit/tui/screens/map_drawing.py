@@ -18,6 +18,7 @@ from kit.document.rows import Row, row
 from kit.mapmaking.map_sketch import MapSketch, SketchMark, Square
 from kit.mapmaking.new_map import NewMap
 from kit.render.encode import Frame
+from kit.render.frame_text import write_text
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from kit.tui.theme import Theme
 
 PANEL_WIDTH: Final = 24
+PANEL_FROM: Final = 60
+"""Columns of the terminal from which the panel is shown."""
 CELL_COLUMNS: Final = 2
 """A character is about twice as high as wide: two of them make a square."""
 PENS: Final[tuple[tuple[SketchMark, str], ...]] = (
@@ -45,7 +48,7 @@ MAX_UNDO: Final = 200
 class SketchView(FrameView):
     """The sheet with the cursor. Tells the screen which squares the mouse draws in."""
 
-    DEFAULT_CSS = "SketchView { width: 1fr; height: 1fr; }"
+    DEFAULT_CSS = "SketchView { height: 1fr; }"
 
     class Drawn(Message):
         """The mouse went from one square to another with a button down, or pressed it on one."""
@@ -61,45 +64,59 @@ class SketchView(FrameView):
         super().__init__(theme.palette)
         self._is_ascii = theme.terminal.glyphs.value == "ascii"
         self._origin = (0, 0)
+        self._side = 1
+        """Rows of characters to a square."""
         self._dragged: Square | None = None
 
-    def draw(self, sketch: MapSketch, cursor: Square) -> None:
-        """Shows as much of the sketch as there is room for, the cursor with it."""
-        columns, rows = self.size
-        if not columns or not rows:
+    def draw(self, sketch: MapSketch, cursor: Square, columns: int, rows: int) -> None:
+        """Shows as much of the sketch as the columns and rows have room for, the cursor with it, in the largest squares in
+        which all of it fits."""
+        if columns < CELL_COLUMNS or rows < 1:
             return
-        self._origin = (
-            _first_shown(self._origin[0], cursor[0], columns // CELL_COLUMNS, sketch.columns),
-            _first_shown(self._origin[1], cursor[1], rows, len(sketch.rows)),
+        self._side = side = max(1, min(columns // (CELL_COLUMNS * sketch.columns), rows // len(sketch.rows)))
+        wide, high = min(columns // (CELL_COLUMNS * side), sketch.columns), rows // side
+        self._origin = left, top = (
+            _first_shown(self._origin[0], cursor[0], wide, sketch.columns),
+            _first_shown(self._origin[1], cursor[1], high, len(sketch.rows)),
         )
-        frame = Frame.empty(columns, rows)
-        for y, line in enumerate(sketch.rows[self._origin[1] : self._origin[1] + rows]):
-            for x, mark in enumerate(line[self._origin[0] : self._origin[0] + columns // CELL_COLUMNS]):
-                square = x + self._origin[0], y + self._origin[1]
-                glyphs, role = self._glyphs(mark)
-                if square == cursor:
-                    glyphs, role = (
-                        f"[{']' if mark in '# ' else mark}",
-                        Role.CONTACT if mark == "#" else Role.TEXT,
-                    )
-                for place, glyph in enumerate(glyphs):
-                    frame.glyphs[y, CELL_COLUMNS * x + place] = ord(glyph)
-                    frame.fg[y, CELL_COLUMNS * x + place] = role
+        across = CELL_COLUMNS * side
+        frame = Frame.empty(across * wide, rows)
+        for y, line in enumerate(sketch.rows[top : top + high]):
+            for x, mark in enumerate(line[left : left + wide]):
+                texts, role = self._square_texts(mark, is_chosen=(x + left, y + top) == cursor)
+                for number, text in enumerate(texts):
+                    write_text(frame, y * side + number, across * x, text, role)
+        self.styles.width = across * wide
         self.show_frame(frame)
 
-    def _glyphs(self, mark: str) -> tuple[str, Role]:
+    def _square_texts(self, mark: str, *, is_chosen: bool) -> tuple[list[str], Role]:
+        """A square's rows of characters, in brackets where the cursor is."""
+        across = CELL_COLUMNS * self._side
         match mark:
             case "#":
-                return ("##" if self._is_ascii else "██"), Role.WALL
-            case "S":
-                return "S ", Role.ROBOT
-            case "T":
-                return "T ", Role.TARGET
+                texts, role = [("#" if self._is_ascii else "█") * across] * self._side, Role.WALL
+            case "S" | "T":
+                texts, role = self._in_middle(mark), Role.ROBOT if mark == "S" else Role.TARGET
             case _:
-                return (". " if self._is_ascii else "· "), Role.BEAM
+                texts, role = self._in_middle("." if self._is_ascii else "·"), Role.BEAM
+        if not is_chosen:
+            return texts, role
+        role = Role.CONTACT if mark == "#" else Role.TEXT
+        if self._side == 1:  # too narrow for two brackets around a mark
+            return [f"[{mark if mark in 'ST' else ']'}"], role
+        return [f"[{text[1:-1]}]" for text in texts], role
+
+    def _in_middle(self, glyph: str) -> list[str]:
+        across = CELL_COLUMNS * self._side
+        return [
+            f"{glyph:^{across}}" if number == self._side // 2 else " " * across
+            for number in range(self._side)
+        ]
 
     def _square(self, event: events.MouseEvent) -> Square:
-        return event.x // CELL_COLUMNS + self._origin[0], event.y + self._origin[1]
+        return event.x // (CELL_COLUMNS * self._side) + self._origin[0], event.y // self._side + self._origin[
+            1
+        ]
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         self._dragged = self._square(event)
@@ -148,14 +165,14 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     uses_mouse: ClassVar[bool] = True
-    DEFAULT_CSS = f"""
-    MapDrawingScreen {{ layout: vertical; }}
-    MapDrawingScreen #heading, MapDrawingScreen #keys {{ height: 1; }}
-    MapDrawingScreen #middle {{ height: 1fr; }}
-    MapDrawingScreen #panel {{ width: {PANEL_WIDTH}; padding: 0 0 0 1; }}
-    MapDrawingScreen.-narrow #panel {{ display: none; }}
+    DEFAULT_CSS = """
+    MapDrawingScreen { layout: vertical; }
+    MapDrawingScreen #heading, MapDrawingScreen #keys { height: 1; }
+    MapDrawingScreen #middle { height: 1fr; }
+    MapDrawingScreen #panel { width: 1fr; padding: 0 0 0 1; }
+    MapDrawingScreen.-narrow #panel { display: none; }
     """
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (60, "-wide")]  # noqa: RUF012 - Textual's own
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (PANEL_FROM, "-wide")]  # noqa: RUF012 - Textual's own
 
     def __init__(
         self,
@@ -208,7 +225,8 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         self.query_one("#heading", TextRows).show([heading])
         self.query_one("#panel", TextRows).show(self._panel())
         self.query_one("#keys", TextRows).show([footer(self.screen_actions, width)])
-        self._view.draw(self.sketch, self.cursor)
+        room = width if width < PANEL_FROM else width - PANEL_WIDTH
+        self._view.draw(self.sketch, self.cursor, room, self.size.height - 2)
 
     def _panel(self) -> list[Row]:
         sketch, (column, line) = self.sketch, self.cursor
@@ -235,8 +253,8 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
             row(),
             row(("The robot needs", "dim")),
             row((" 0.26 m to get through.", "dim")),
-            row(("Without S or T the kit", "dim")),
-            row(("chooses two places.", "dim")),
+            row(("If not set, start and", "dim")),
+            row(("target are chosen.", "dim")),
         ]
 
     def _change(self, sketch: MapSketch, *, remembers: bool = True) -> None:

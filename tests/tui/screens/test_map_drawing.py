@@ -71,27 +71,35 @@ def test_a_map_is_drawn_with_the_keys_and_written(desk: Desk) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("ascii_only", [False, True])
-def test_the_mouse_draws_and_clears(desk: Desk, ascii_only: bool) -> None:
+@pytest.mark.parametrize(("size", "side"), [((80, 24), 2), ((80, 12), 1), ((120, 35), 4)])
+def test_the_mouse_draws_and_clears_in_squares_that_use_the_room(
+    desk: Desk, size: tuple[int, int], side: int, ascii_only: bool
+) -> None:
+    def at(column: int, line: int) -> tuple[int, int]:
+        return 2 * side * column + side, side * line + side - 1
+
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "New map mine")
-        await pilot.mouse_down(SketchView, offset=(6, 1))
-        await pilot.hover(SketchView, offset=(6, 4))
-        await pilot.mouse_up(SketchView, offset=(6, 4))
+        await pilot.mouse_down(SketchView, offset=at(3, 1))
+        await pilot.hover(SketchView, offset=at(3, 4))
+        await pilot.mouse_up(SketchView, offset=at(3, 4))
         await pilot.pause()
-        assert drawing(pilot).sketch.rows[1][3] == "#"
-        wall = "##" if ascii_only else "██"
-        assert rows(pilot)[2][6:8] == wall
+        assert [line[3] for line in drawing(pilot).sketch.rows] == ["#"] * 6
+        wall = ("#" if ascii_only else "█") * 2 * side
+        for line in range(1 + side, 1 + 2 * side):
+            assert rows(pilot)[line][6 * side : 8 * side] == wall
+            assert rows(pilot)[line][4 * side : 6 * side] != wall
         await pilot.press("4")
-        await pilot.click(SketchView, offset=(10, 3))
+        await pilot.click(SketchView, offset=at(5, 3))
         assert drawing(pilot).sketch.find("T") == (5, 3)
         await pilot.press("1")
-        await pilot.click(SketchView, offset=(6, 1), button=3)
+        await pilot.click(SketchView, offset=at(3, 1), button=3)
         assert drawing(pilot).sketch.rows[1][3] == " "
         await pilot.press("u", "u", "u")
         assert "T" not in drawing(pilot).sketch.text
         assert text(pilot).isascii() == ascii_only
 
-    stage(desk.open, scene, ascii_only=ascii_only)
+    stage(desk.open, scene, size=size, ascii_only=ascii_only)
 
 
 @pytest.mark.long
