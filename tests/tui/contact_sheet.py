@@ -138,7 +138,6 @@ VISITS: Final = {
         ("launch", f"{LESSONS}/33-a-real-workspace/layout/starter/ros2_ws/src/scout_bringup"), (), 6.0
     ),
     "two-players": ScreenVisit(("game", "host", "two-doors", "--tag")),
-    "trainings": ScreenVisit(("runs",)),
     "replay": ScreenVisit(("game", "replay", "left-turn"), ("r",), 2.0),
 }
 
