@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import groupby
+from itertools import accumulate, groupby
 from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
 
 from kit.breadth_first import reached_from
@@ -59,9 +60,14 @@ class Board(ABC):
         """A picture of what ``rows`` tells, at most as large; empty where there is none, or no room for it."""
         return []
 
-    def details(self) -> list[Row]:
-        """More that helps to solve it, which is shown where there is room."""
+    def details(self, width: int) -> list[list[Row]]:
+        """More that helps to solve it, each part below its title, the most useful one first; those that are at most ``width``
+        columns wide are shown where there is room."""
         return []
+
+    def curve(self) -> tuple[str, Sequence[float]]:
+        """A figure after each move, with its name; no figures for an answer that has no moves."""
+        return "", ()
 
     @abstractmethod
     def judgement(self) -> Judgement:
@@ -115,6 +121,11 @@ def step(grid: Grid, cell: Cell, move: str) -> Cell:
     return (row, column) if is_inside and grid[row][column] != WALL else cell
 
 
+def cells_of_moves(grid: Grid, cell: Cell, moves: str) -> list[Cell]:
+    """Where each move leads to, one after another from a cell."""
+    return list(accumulate(moves, lambda here, move: step(grid, here, move), initial=cell))[1:]
+
+
 def distances_to(grid: Grid, goal: Cell) -> dict[Cell, int]:
     """The number of moves to a cell from every cell that leads there."""
     reached = reached_from(goal, lambda cell: ((move, step(grid, cell, move)) for move in MOVES))
@@ -163,6 +174,33 @@ def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1)
         for row, line in enumerate(grid)
         for part in range(1 if is_thin(row, rows, line) else scale)
     ]
+
+
+def figure_rows(title: str, grid: Grid, figures: Mapping[Cell, str]) -> list[Row]:
+    """A grid below its title, with a figure in each cell that has one; walls at the edges are left out."""
+    free = free_cells(grid)
+    (top, bottom), (left, right) = ((min(each), max(each)) for each in zip(*free, strict=True))
+    width = max((len(text) for text in figures.values()), default=1) + 1
+
+    def shown(cell: Cell) -> tuple[str, str]:
+        if cell not in free:
+            return FULL * width, "dim"
+        return f"{figures.get(cell, '.'):>{width}}", "" if cell in figures else "dim"
+
+    return [
+        ((title, "dim"),),
+        *(
+            tuple(_join_by_style(shown((row, column)) for column in range(left, right + 1)))
+            for row in range(top, bottom + 1)
+        ),
+    ]
+
+
+def visit_rows(grid: Grid, cells: Iterable[Cell]) -> list[Row]:
+    """How often each cell of a grid was entered."""
+    return figure_rows(
+        "times on each square", grid, {cell: str(count) for cell, count in Counter(cells).items()}
+    )
 
 
 def _plain_square(sign: str) -> tuple[str, str]:

@@ -23,6 +23,8 @@ from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 CHALLENGES_FILE: Final = "challenges.yaml"
+BEGUN: Final = "begun"
+"""The text of the event with which a clock begins, which is no check."""
 PREFIX: Final = "challenge-"
 """Prefix of a challenge's subject in the journal."""
 
@@ -68,10 +70,14 @@ def starts_clock(journal: ProgressJournal, challenge: Challenge) -> bool:
     return challenge.task.clock is not None and not _looks(journal, challenge)
 
 
+def challenge_events(journal: ProgressJournal, challenge: Challenge) -> list[ProgressEvent]:
+    """What is recorded of a challenge, the oldest first: where a clock runs its first look, and each check. Raises ProgressError."""
+    return journal.events(EventKind.FINISH, f"{PREFIX}{challenge.id}")
+
+
 def _looks(journal: ProgressJournal, challenge: Challenge) -> list[float]:
     """When a challenge with a clock was looked at, or its answer judged [s since the epoch]."""
-    subject = f"{PREFIX}{challenge.id}"
-    return [event.time.timestamp() for event in journal.events(EventKind.FINISH, subject)]
+    return [event.time.timestamp() for event in challenge_events(journal, challenge)]
 
 
 def prepare_answer(
@@ -88,7 +94,7 @@ def prepare_answer(
     now = time.time() if now_s is None else now_s
     begun = _looks(journal, challenge)
     if not begun:
-        journal.add(EventKind.FINISH, f"{PREFIX}{challenge.id}", {"medal": 0, "text": "begun"})
+        journal.add(EventKind.FINISH, f"{PREFIX}{challenge.id}", {"medal": 0, "text": BEGUN})
     return file, max(0.0, now - begun[0]) if begun else 0.0
 
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
-from kit.plain_text import quoted
+from kit.document.rows import Row, row
+from kit.plain_text import quoted, wrap
 from kit.school.game.board import MOVES, Board, letters_of
 from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement
@@ -63,6 +64,12 @@ class MovesBoard(Board):
     def move(self, columns: int, rows: int) -> None:
         if len(self.moves) < self._most:
             self.moves += letters_of(columns, rows)
+
+    def moves_made(self, width: int) -> list[Row]:
+        """The moves so far, ten to a group."""
+        groups = [self.moves[at : at + 10] for at in range(0, len(self.moves), 10)]
+        lines = wrap(" ".join(groups), width, "  ", "  ")
+        return [row(("moves so far", "dim")), *map(row, lines)] if groups else []
 
     def undo(self) -> None:
         self.moves = self.moves[:-1]

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text, row_width, side_by_side
+from kit.document.rows import Row, at_both_edges, broken, lines_shown, row, row_text, row_width, side_by_side
 from kit.layers.drawing.spans import GlyphStyle
-from kit.plain_text import wrap
+from kit.plain_text import counted, wrap
 from kit.school.game.board import Board
 from kit.school.game.challenge import Challenge
+from kit.school.game.challenges import BEGUN
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.game.players_histogram import HistogramBin
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
+from kit.school.progress import ProgressEvent
+from kit.tui.rows.chart_rows import CHART_ROWS, stretched_chart
 from kit.tui.rows.drive_end_rows import needed_rows
 from kit.tui.rows.level_rows import TITLE_WIDTH
 from kit.tui.rows.medal_rows import medal_row
@@ -33,7 +37,20 @@ DRAWING_SHARE: Final = 0.5
 LEAST_BOARD: Final = 60
 """Columns of a board that is no drawing."""
 GAP: Final = 2
-LARGEST_SCALE: Final = 9
+LARGEST_SCALE: Final = 5
+"""More would only be larger: the room tells more instead."""
+LONG_LIST, LEAST_LISTED = 16, 4
+"""Rows of a part that may be cut, and the fewest of it that are shown."""
+TWO_TEXTS: Final = 48
+"""Columns of each of two texts beside a board."""
+MOST_CURVE_ROWS: Final = 14
+"""Of a curve below a board."""
+NEW: Final = " (new)"
+"""After a medal that is better than those before."""
+MOST_TRIES: Final = 4
+"""Checks that are listed."""
+LEAST_TOLD: Final = 34
+"""Columns from which on a check is listed with what was said of it."""
 NAME_COLUMNS: Final = 14
 LIST_COLUMNS: Final = 56
 """Of the list, where a picture stands beside it."""
@@ -112,6 +129,18 @@ def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[
     ]
 
 
+@dataclass(frozen=True, slots=True)
+class PuzzleCheck:
+    """What came of handing in a puzzle's answer."""
+
+    previous: Medal = Medal.NONE
+    """The best medal before."""
+    following: str | None = None
+    """The title of the next challenge; None after the last one."""
+    problem: str = ""
+    """Why it could not be judged or kept; empty where it was."""
+
+
 def puzzle_page(
     challenge: Challenge,
     board: Board,
@@ -119,14 +148,19 @@ def puzzle_page(
     width: int,
     height: int,
     glyphs: GlyphStyle,
+    check: PuzzleCheck | None = None,
+    beside: Sequence[Sequence[Row]] = (),
+    last: Sequence[Row] = (),
 ) -> list[Row]:
     """A puzzle below each other: what it asks for, its board, what the answer is worth. ``judgement``: or why there is none.
-    Where there are too few rows, the story gives way first, then the sentence about the worth, then the task."""
+    ``beside``, ``last``: parts that stand beside the board before and after its details, those that fit there. A check changes no row's place. Where there are too few
+    rows, the story gives way first, then the sentence about the worth, then the task."""
     story, task, keys = _about_puzzle(challenge, board, width)
-    worth, sentence = worth_now(judgement, width)
+    worth, sentence = worth_now(judgement, width, check)
     around = sum(map(len, (story, task, keys, worth, sentence)))
     scale, _ = largest_drawing(board, width, height - around - 1)
-    middle = [row(), *_with_drawing(board, board.rows(scale), width, height - around - 1, glyphs)]
+    room = height - around - 1
+    middle = [row(), *_with_drawing(board, board.rows(scale), width, room, glyphs, beside, last)]
     left_out = 0
     while True:
         parts = [
@@ -149,46 +183,91 @@ def puzzle_beside(
     width: int,
     height: int,
     glyphs: GlyphStyle,
-    below: Sequence[Row] = (),
+    check: PuzzleCheck | None = None,
+    beside: Sequence[Sequence[Row]] = (),
+    last: Sequence[Row] = (),
 ) -> list[Row]:
-    """A puzzle with its picture at the left, as large as there is room for, and the rest beside it, with more ``below`` that
-    where it has room. The picture is the board, or a drawing of it, which then stands among the rest."""
-    drawing = board.drawing(int(width * DRAWING_SHARE), height - 1, glyphs)
-    if drawing:
+    """A puzzle with its picture at the left and the curve of its moves below, and beside it what it asks for, what the answer is
+    worth and what helps to solve it, in two columns where there is room. The picture is the board, or a drawing of it, which then
+    stands among the rest. ``beside``, ``last``: more parts, before and after the board's details, those that fit."""
+    if drawing := board.drawing(int(width * DRAWING_SHARE), height - 1, glyphs):
         column, left = max(map(row_width, drawing)) + GAP, drawing
     else:
         scale, columns = largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
         column = min(max(LEAST_BOARD, columns + GAP), width - LEAST_TEXT)
         left = [each for shown in board.rows(scale) for each in _wrap_row(shown, column - GAP)]
-    room = min(width - column - 1, WIDEST_TEXT)
+        left += _curve_rows(board, column - GAP, height - 1 - len(left))
+    rest = width - column - 1
+    count = 2 if rest >= 2 * TWO_TEXTS else 1
+    room = min(rest // count - GAP * (count - 1), WIDEST_TEXT)
     story, task, keys = _about_puzzle(challenge, board, room)
-    worth, sentence = worth_now(judgement, room)
-    details = [part for each in board.details() for part in _wrap_row(each, room)]
-    about = [row(), *story, row(), *task, row(), *keys, row()]
+    worth, sentence = worth_now(judgement, room, check)
+    text = [row(), *story, row(), *task, row(), *keys, row(), *worth]
+    text += sentence if len(text) + len(sentence) <= height else ()
+    details = board.details(room)
     table: list[Row] = []
     if drawing:
-        cells, rest = _table_and_rest(board.rows())
-        told = [each for shown in rest for each in _wrap_row(shown, room)]
-        left_of = max(map(row_width, cells), default=0) + GAP
-        rows = len(about) + len(details) + len(told) + len(worth) + 1
-        if rows <= height and left_of + max(map(row_width, details), default=0) < width - column:
-            cells, details = side_by_side(cells, details, left_of), []
-        table = [*cells, *told, row()]
-    text = [*about, *table, *worth]
-    text += sentence if len(text) + len(sentence) <= height else ()
-    text += [row(), *below] if len(text) + len(below) < height else ()
-    text += [row(), *details][: max(0, height - len(text))]
-    return side_by_side([row(), *left], text, column)
+        cells, told = _table_and_rest(board.rows())
+        table = [*cells, *(each for shown in told for each in _wrap_row(shown, room))]
+    below = (table, *beside, last) if count > 1 else (table, *beside, *details, last)
+    text += _stacked(below, room, height - len(text))
+    shown = side_by_side([row(), *left], text, column)
+    return shown if count == 1 else side_by_side(shown, _stacked(details, room, height), column + room + GAP)
+
+
+def _stacked(parts: Iterable[Sequence[Row]], width: int, height: int) -> list[Row]:
+    """Those parts below each other that fit, each below an empty row; of a long list as much as there is room for."""
+    placed: list[Row] = []
+    for part in parts:
+        room = height - len(placed) - 1
+        shown = part[:room] if len(part) > LONG_LIST and room >= LEAST_LISTED else part
+        if shown and len(shown) <= room and max(map(row_width, shown)) <= width:
+            placed += [row(), *shown]
+    return placed
+
+
+def _curve_rows(board: Board, width: int, height: int) -> list[Row]:
+    """The curve of a figure of a board over its moves; none where there is no room, or no move yet."""
+    title, figures = board.curve()
+    if not figures or height < CHART_ROWS + 2:
+        return []
+    return [row(), *stretched_chart(title, "", figures, width, 1.0, min(height - 2, MOST_CURVE_ROWS))]
+
+
+def tries_rows(events: Sequence[ProgressEvent], width: int) -> list[Row]:
+    """The checks of a challenge so far, the newest first. ``events``: of it, the oldest first."""
+    checks = [each for each in events if "medal" in each.content and each.content.get("text") != BEGUN]
+    if not checks:
+        return []
+    note = f", the last {MOST_TRIES}" if len(checks) > MOST_TRIES else ""
+    rows = [row((f"{counted(len(checks), 'check')} so far{note}", "dim"))]
+    for each in reversed(checks[-MOST_TRIES:]):
+        number = int(each.number("medal") or 0)
+        medal = Medal(number) if number in tuple(Medal) else Medal.NONE
+        when = f" {each.time.astimezone():%d %b %H:%M}  "
+        sign = (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal])
+        told = str(each.content.get("text", "")) if width >= LEAST_TOLD else medal.title
+        rows += broken(row((when, "dim"), sign, told), width)
+    return rows
 
 
 def _with_drawing(
-    board: Board, rows: Sequence[Row], width: int, height: int, glyphs: GlyphStyle
+    board: Board,
+    rows: Sequence[Row],
+    width: int,
+    height: int,
+    glyphs: GlyphStyle,
+    beside: Sequence[Sequence[Row]],
+    last: Sequence[Row],
 ) -> list[Row]:
-    """A board with the drawing of it, if it has one, beside its table."""
+    """A board with the drawing of it, if it has one, else with what fits there, beside its table."""
     table, rest = _table_and_rest(rows)
     column = max(map(row_width, table), default=0) + GAP
-    drawing = board.drawing(width - column, max(len(table), height - len(rest)), glyphs)
-    return [*(side_by_side(table, drawing, column) if drawing else table), *rest]
+    right = board.drawing(width - column, max(len(table), height - len(rest)), glyphs)
+    if not right:
+        parts = (*beside, *board.details(width - column), last)
+        right = _stacked(parts, width - column, len(table) + 1)[1:]
+    return [*(side_by_side(table, right, column) if right else table), *rest]
 
 
 def _table_and_rest(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
@@ -226,20 +305,23 @@ def _about_puzzle(challenge: Challenge, board: Board, width: int) -> tuple[list[
     )
 
 
-def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[Row]]:
-    """What the answer on a board is worth, with a bar from the naive answer to the best one; and a sentence about it."""
+def worth_now(
+    judgement: Judgement | str, width: int, check: PuzzleCheck | None = None
+) -> tuple[list[Row], list[Row]]:
+    """What the answer on a board is worth, with a bar from the naive answer to the best one; and a sentence about it. ``check``:
+    what came of handing it in, which is told in as many rows."""
+    lead = ("now    " if check is None else "judged ", "dim")
+    problem = "" if check is None else check.problem
     if isinstance(judgement, str):
         sentence = _wrap_with_lead("      ", judgement, width, "dim") if judgement else []
-        return [row(("now    ", "dim"), "no answer yet")], sentence
+        return [row(lead, "no answer yet")], sentence
+    medal = judgement.medal
+    is_new = check is not None and not problem and medal > check.previous
     rows = [
-        row(
-            ("now    ", "dim"),
-            (MEDAL_SIGNS[judgement.medal] + " ", MEDAL_STYLES[judgement.medal]),
-            (judgement.medal.title, "bold"),
-        )
+        row(lead, (MEDAL_SIGNS[medal] + " ", MEDAL_STYLES[medal]), (medal.title + NEW * is_new, "bold")),
     ]
     if asked := next_medal(judgement):
-        is_beside = row_width(rows[0]) + len(asked) <= width
+        is_beside = row_width(rows[0]) + len(NEW) * (not is_new) + len(asked) <= width
         rows[-1:] = [row(*rows[0], asked)] if is_beside else [*rows, row("    ", asked)]
     comparison = judgement.comparison
     if comparison is not None and comparison.others[0][1] != comparison.others[-1][1]:
@@ -255,7 +337,14 @@ def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[R
             rows.append(row(indent, *parts))
         else:
             rows += [row(indent, (text.strip(), style)) for text, style in parts]
-    return rows, _wrap_with_lead("      ", judgement.text, width, "dim")
+    sentence = _wrap_with_lead("      ", judgement.text, width, "dim")
+    if check is not None and (problem or (check.following is not None and medal is not Medal.NONE)):
+        told = problem or f"next   {check.following}"
+        told_rows = (
+            _wrap_with_lead("      ", told, width, "dim") if problem else [row(("next   ", "dim"), told[7:])]
+        )
+        sentence = [*told_rows, *[row()] * len(sentence)][: len(sentence)]
+    return rows, sentence
 
 
 def next_medal(judgement: Judgement) -> str:
@@ -286,10 +375,10 @@ def beside_others(judgement: Judgement, width: int) -> list[Row]:
     return rows if judgement.comparison is None else rows + _comparison_rows(judgement.comparison)
 
 
-def answers_needed_rows(bins: Sequence[HistogramBin], comparison: AnswerComparison) -> list[Row]:
+def answers_needed_rows(bins: Sequence[HistogramBin], comparison: AnswerComparison, width: int) -> list[Row]:
     """A histogram of what all players of this machine needed; empty for one without bins."""
     decimals = 0 if float(comparison.answer).is_integer() else 2
-    return needed_rows(bins, comparison.unit, decimals)
+    return needed_rows(bins, width, comparison.unit, decimals)
 
 
 def _comparison_rows(comparison: AnswerComparison) -> list[Row]:

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Final
 
 from kit.document.rows import Row, row
+from kit.tui.rows.ruled_title import ruled_title
 
 CHART_ROWS: Final = 5
 CHART_LABEL: Final = 6
@@ -43,7 +44,7 @@ def time_chart(values: Sequence[float], width: int, least: float, rows: int = CH
     upper = _bar_rows([max(value, 0.0) for value in paired], top, middle, "", has_zero=False)
     lower = [
         row(
-            (f"{-top:4.1f}  " if number == rows - middle - 2 else " " * CHART_LABEL, "dim"),
+            (f"{-top:<{CHART_LABEL}.1f}" if number == rows - middle - 2 else " " * CHART_LABEL, "dim"),
             (
                 "".join(_downward_block(-value / top * (rows - middle - 1) - number) for value in paired),
                 "code",
@@ -53,6 +54,15 @@ def time_chart(values: Sequence[float], width: int, least: float, rows: int = CH
     ]
     axis = row(("   0  ", "dim"), ("".join("─" if value == 0.0 else "━" for value in paired), "dim"))
     return [*upper, axis, *lower]
+
+
+def stretched_chart(
+    title: str, note: str, values: Sequence[float], width: int, least: float, rows: int
+) -> list[Row]:
+    """A chart below its title of values from the first to the last, stretched over ``width`` columns."""
+    bars = width - CHART_LABEL
+    shown = [values[min(len(values) - 1, bar * len(values) // bars)] for bar in range(bars)]
+    return [ruled_title(title, width, note), *time_chart(shown, width, least, rows)]
 
 
 def _downward_block(share: float) -> str:
@@ -75,7 +85,7 @@ def _bar_rows(
     for number, glyphs in enumerate(column_chart([value / top for value in values], rows)):
         label = " " * CHART_LABEL
         if number == 0:
-            label = f"{top:4.1f}{unit:<2}"
+            label = f"{top:4.1f}{unit}".ljust(CHART_LABEL)
         elif number == rows - 1 and has_zero:
             label = f"   0{unit:<2}"
             glyphs = glyphs.replace(" ", "_")  # the axis

@@ -13,11 +13,10 @@ from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.tui.rows.chart_rows import CHART_LABEL, CHART_ROWS, time_chart
+from kit.tui.rows.chart_rows import CHART_ROWS, stretched_chart
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import NO_STAR, STAR
-from kit.tui.rows.ruled_title import ruled_title
 
 LEAST_LEAD: Final = 0.5
 """Of a chart's scale [s]."""
@@ -104,16 +103,14 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
 
 def lead_rows(leads: Sequence[float], width: int, room: int) -> list[Row]:
     """A chart of how far ahead of the reference a drive was [s], from its beginning to its end, as high as ``room`` rows allow."""
-    bars = width - CHART_LABEL
     if len(leads) < 2:
         return []
-    shown = [leads[min(len(leads) - 1, bar * len(leads) // bars)] for bar in range(bars)]
-    title = ruled_title("ahead of the reference", width - MARGIN, "s, down is behind")
     rows = min(HIGHEST_LEAD, max(CHART_ROWS, (room - 2) // 2 * 2 + 1))  # an odd number: zero is in the middle
-    return [row(" ", *each) for each in (title, *time_chart(shown, width, LEAST_LEAD, rows))]
+    title, note = "ahead of the reference", "s, down is behind"
+    return [row(" ", *each) for each in stretched_chart(title, note, leads, width - MARGIN, LEAST_LEAD, rows)]
 
 
-def needed_rows(bins: Sequence[HistogramBin], unit: str = "s", decimals: int = 2) -> list[Row]:
+def needed_rows(bins: Sequence[HistogramBin], width: int, unit: str = "s", decimals: int = 2) -> list[Row]:
     """A histogram of what all players of this machine needed; empty for one without bins."""
     most = max((each.count for each in bins), default=0)
     if not most:
@@ -121,9 +118,11 @@ def needed_rows(bins: Sequence[HistogramBin], unit: str = "s", decimals: int = 2
     players = sum(each.count for each in bins)
     rows = [row((f"   what {players} players here needed", "dim"))]
     for each in bins:
-        bar = "=" * round(BAR * each.count / most) if each.count else ""
+        start = f"   to {each.high:7.{decimals}f} {unit}  {each.count:3} "
         own = " < you" if each.holds_own else ""
-        rows.append(row(f"   to {each.high:7.{decimals}f} {unit}  {each.count:3} ", bar, (own, "bold")))
+        longest = max(1, min(BAR, width - len(start) - len(" < you")))
+        bar = "=" * max(1, round(longest * each.count / most)) if each.count else ""
+        rows.append(row(start, bar, (own, "bold")))
     return rows
 
 

@@ -20,6 +20,7 @@ from kit.school.game.challenge import AnswerError, AnswerSubmission, Challenge
 from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
 from kit.school.game.judgement import Judgement
 from kit.school.game.medal import Medal
+from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.shared_answers import share_answer
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import answers_needed_rows, beside_others, challenge_page, judged
@@ -88,8 +89,8 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._result: list[Row] = []
         self._won = Medal.NONE
         """The medal that was just won, which is drawn where there is room."""
-        self._needed: list[Row] = []
-        """What all players of this machine needed."""
+        self._bins: tuple[HistogramBin, ...] = ()
+        """How many players of this machine needed how much."""
         self._doing = ""
         self._started_at: float | None = None
         """When the running check was started; None while none is."""
@@ -159,17 +160,12 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     def _result_rows(self) -> list[Row]:
         if self._started_at is not None:
             return [checking(time.monotonic() - self._started_at, self._doing, self.size.width)]
-        drawing = [] if self._draws_beside else self._drawing
-        return [*drawing, *(each for parts in self._result for each in broken(parts, self.size.width))]
+        told = (each for parts in self._result for each in broken(parts, self.size.width))
+        return [*self._drawing, *told]
 
     @property
     def _drawing(self) -> list[Row]:
         return medal_drawing(self._won, self.size.height)
-
-    @property
-    def _draws_beside(self) -> bool:
-        """Whether the page has the medal's drawing."""
-        return False
 
     def _unavailable_actions(self) -> list[str]:
         return [
@@ -208,19 +204,26 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._show()
         try:
             judgement, previous = await to_thread(self._judge, answer)
-            beside = self._beside_others(judgement)
-            self._result = [*judged(judgement, previous, self._following, beside), *self._needed]
+            self._tell(judgement, previous)
             self._won = judgement.medal if judgement.medal > previous else Medal.NONE
         except (AnswerError, WorldError, ProgressError, OSError) as error:
             self._won = Medal.NONE
-            self._result = [row((" No medal", "bold")), row(f" {error}")]
+            self._tell_problem(str(error))
         finally:
             self._started_at = None
         self._renew()
 
-    def _beside_others(self, judgement: Judgement) -> list[Row]:
-        """What is said of a judged answer, unless the page says it."""
-        return beside_others(judgement, self.size.width)
+    def _tell(self, judgement: Judgement, previous: Medal) -> None:
+        """Says what an answer earned. ``previous``: the best medal before."""
+        width = self.size.width
+        beside = beside_others(judgement, width)
+        self._result = judged(judgement, previous, self._following, beside)
+        if judgement.comparison is not None:
+            self._result += answers_needed_rows(self._bins, judgement.comparison, width)
+
+    def _tell_problem(self, problem: str) -> None:
+        """Says why an answer was not judged."""
+        self._result = [row((" No medal", "bold")), row(f" {problem}")]
 
     def _prepare_check(self) -> None:
         """What is to be done before an answer is checked."""
@@ -233,8 +236,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         judgement = self._challenge.task.judge(submission)
         medals = challenge_medals(self._progress.events(EventKind.FINISH))
         record_judgement(self._progress, self._challenge, judgement)
-        bins = share_answer(self._challenge, answer, judgement)
-        self._needed = [] if judgement.comparison is None else answers_needed_rows(bins, judgement.comparison)
+        self._bins = share_answer(self._challenge, answer, judgement)
         return judgement, medals.get(self._challenge.id, Medal.NONE)
 
     def _prepare(self) -> tuple[Path | None, float]:

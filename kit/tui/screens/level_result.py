@@ -183,7 +183,7 @@ class DriveResultScreen(ModalScreen[Wish]):
             return
         seconds = await to_thread(seconds_needed, result.level, result.driver)
         was_all_shown = self._shown >= len(self._revealed)
-        self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds))
+        self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds), WIDTH)
         self._leads = await to_thread(leads_over_reference, result)
         if was_all_shown:
             self._shown = len(self._revealed)

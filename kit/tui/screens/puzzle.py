@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual.binding import BindingType
 
@@ -11,10 +11,18 @@ from kit.dialogue.screen_action import letter
 from kit.document.rows import Row
 from kit.school.game.board import Board
 from kit.school.game.challenge import AnswerError, Challenge, as_comments
+from kit.school.game.challenges import challenge_events
 from kit.school.game.judgement import Judgement
 from kit.school.game.medal import Medal
-from kit.school.progress import ProgressJournal
-from kit.tui.rows.challenge_rows import puzzle_beside, puzzle_page
+from kit.school.progress import ProgressEvent, ProgressJournal
+from kit.tui.rows.challenge_rows import (
+    LEAST_TEXT,
+    PuzzleCheck,
+    answers_needed_rows,
+    puzzle_beside,
+    puzzle_page,
+    tries_rows,
+)
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.challenge import WIDE, ChallengeScreen
 from kit.tui.screens.dialogs import HelpDialog
@@ -22,6 +30,12 @@ from kit.workspace import Workspace, write_atomically
 
 if TYPE_CHECKING:
     from kit.tui.theme import Theme
+
+
+ROWS_AROUND: Final = 3
+"""Of the screen: the heading, and the line of keys with an empty row above it."""
+TRIES: Final = 30
+"""Columns of the list of checks beside a board that its text stands above."""
 
 
 class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
@@ -53,6 +67,9 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         self._written = self._board.answer
         self._before_restart: Board | None = None
         """What was given up by the last key; None where that was another one."""
+        self._checked: PuzzleCheck | None = None
+        """What came of the check, until the board changes."""
+        self._tries = self._checks_so_far()
 
     def _read_board(self) -> Board:
         """The board with the answer that its file holds."""
@@ -74,17 +91,27 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             judgement = self._board.judgement()
         except AnswerError as error:  # which says how an answer is written: nobody writes who has not begun
             judgement = str(error) if self._board.answer.strip() else ""
-        height = self.size.height - 2 - len(self._result_rows())
-        glyphs = self._theme.graph_glyphs
-        if width >= WIDE:
-            return puzzle_beside(
-                self._challenge, self._board, judgement, width, height, glyphs, self._drawing
-            )
-        return puzzle_page(self._challenge, self._board, judgement, width, height, glyphs)
+        is_wide = width >= WIDE
+        needed: list[Row] = []
+        if not isinstance(judgement, str) and judgement.comparison is not None:
+            needed = answers_needed_rows(self._bins, judgement.comparison, LEAST_TEXT)
+        tries = tries_rows(self._tries, LEAST_TEXT if is_wide else TRIES)
+        place = puzzle_beside if is_wide else puzzle_page
+        return place(
+            self._challenge,
+            self._board,
+            judgement,
+            width,
+            self.size.height - ROWS_AROUND,
+            self._theme.graph_glyphs,
+            self._checked,
+            (needed, self._drawing if is_wide else []),
+            tries,
+        )
 
-    @property
-    def _draws_beside(self) -> bool:
-        return self.size.width >= WIDE
+    def _result_rows(self) -> list[Row]:
+        """None: the page says it, so that no row changes its place."""
+        return []
 
     def _unavailable_actions(self) -> list[str]:
         board = self._board
@@ -102,12 +129,19 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
 
     def _changed(self, before_restart: Board | None = None) -> None:
         self._before_restart = before_restart
-        self._result, self._won = [], Medal.NONE
+        self._checked, self._bins, self._won = None, (), Medal.NONE
         self._renew()
 
-    def _beside_others(self, judgement: Judgement) -> list[Row]:
-        """The page says it at every move."""
-        return []
+    def _tell(self, judgement: Judgement, previous: Medal) -> None:
+        self._checked = PuzzleCheck(previous, self._following)
+        self._tries = self._checks_so_far()
+
+    def _tell_problem(self, problem: str) -> None:
+        self._checked = PuzzleCheck(problem=problem)
+
+    def _checks_so_far(self) -> list[ProgressEvent]:
+        """Raises ProgressError."""
+        return challenge_events(self._progress, self._challenge)
 
     def _prepare_check(self) -> None:
         self._write()

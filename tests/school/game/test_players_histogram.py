@@ -23,13 +23,13 @@ def test_every_player_is_counted_once_and_one_bin_holds_ones_own() -> None:
         bins = histogram(figures, chance.uniform(3.0, 40.0))
         assert sum(each.count for each in bins) == count
         assert [each.holds_own for each in bins].count(True) == 1
-        assert len(needed_rows(bins)) == BINS + 1
+        assert len(needed_rows(bins, 74)) == BINS + 1
 
 
 @pytest.mark.parametrize("count", range(LEAST_PLAYERS))
 def test_few_players_make_no_histogram(count: int) -> None:
     assert histogram([9.0] * count, 9.0) == ()
-    assert needed_rows(()) == []
+    assert needed_rows((), 74) == []
 
 
 def test_players_who_all_needed_the_same_stand_in_one_bin() -> None:

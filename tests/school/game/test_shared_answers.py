@@ -104,7 +104,7 @@ def test_the_histogram_comes_with_the_fifth_player(board: Path, monkeypatch: pyt
         (board / f"{player}.{LASERS.id}.txt").write_text(lasers(player % 3))
     bins = share_answer(LASERS, lasers(), judgement)
     assert sum(each.count for each in bins) == LEAST_PLAYERS
-    text = [row_text(each) for each in answers_needed_rows(bins, judgement.comparison)]
+    text = [row_text(each) for each in answers_needed_rows(bins, judgement.comparison, 74)]
     assert all(judgement.comparison.unit in each for each in text[1:])
     assert sum("you" in each for each in text) == 1
     naive = LASERS.task.judge(AnswerSubmission(LASERS.task.naive_answer(), board))

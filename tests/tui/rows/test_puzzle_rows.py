@@ -9,18 +9,22 @@ import pytest
 
 from kit.document.rows import row_text, row_width
 from kit.school.game.challenge import AnswerError, Challenge, judge_return
+from kit.school.game.challenge_kinds.exploit import ExploitTask
 from kit.school.game.challenge_kinds.layers import LayersTask
-from kit.school.game.challenges import all_challenges
+from kit.school.game.challenges import BEGUN, all_challenges
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
+from kit.school.progress import EventKind, ProgressEvent
 from kit.tui.rows.challenge_rows import (
     GAP,
     LARGEST_SCALE,
     LEAST_TEXT,
+    PuzzleCheck,
     largest_drawing,
     next_medal,
     puzzle_beside,
     puzzle_page,
+    tries_rows,
     worth_now,
 )
 
@@ -109,13 +113,83 @@ def test_everything_that_is_still_wrong_with_a_layer_plan_stands_beside_it_where
     challenge = next(each for each in PLAYED if isinstance(each.task, LayersTask))
     board = challenge.task.board("")
     assert board is not None
-    wrong = [row_text(each).strip() for each in board.details()]
+    (part,) = board.details(1000)
+    wrong = [row_text(each).strip() for each in part]
     assert len(wrong) > 20
 
     def told(height: int) -> list[str]:
-        shown = puzzle_beside(challenge, board, "", 200, height, "braille")
-        rows = [row_text(each).strip() for each in shown]
-        return [each for each in wrong if any(shown.endswith(each) for shown in rows)]
+        shown = [row_text(each) for each in puzzle_beside(challenge, board, "", 200, height, "braille")]
+        first = next(number for number, each in enumerate(shown) if wrong[0] in each)
+        column = shown[first].index(wrong[0])
+        text = " ".join(" ".join(each[column:] for each in shown[first:]).split())
+        return [each for each in wrong if each in text]
 
     assert told(48) == wrong
     assert told(20) == wrong[: len(told(20))] != wrong
+
+
+@pytest.mark.parametrize("challenge", PLAYED, ids=lambda each: each.id)
+@pytest.mark.parametrize("width", [80, 120])
+def test_a_check_moves_no_row_of_a_puzzle(challenge: Challenge, width: int) -> None:
+    board = challenge.task.board(challenge.task.naive_answer())
+    assert board is not None
+    for _ in range(3):
+        board.move(1, 0)
+        board.mark()
+    try:
+        judgement: Judgement | str = board.judgement()
+    except AnswerError as error:
+        judgement = str(error)
+    place = puzzle_page if width == 80 else puzzle_beside
+    needed = [(("what 9 players here needed", "dim"),), (("to 9 moves", ""),)]
+    before, after, failed = (
+        [row_text(each) for each in place(challenge, board, judgement, width, 21, "braille", check, beside)]
+        for check, beside in (
+            (None, ()),
+            (PuzzleCheck(following="Another one"), (needed,)),
+            (PuzzleCheck(problem="The disk is full."), ()),
+        )
+    )
+    drawn = [row_text(each) for each in board.rows(1)][-1].strip()
+    for shown in (after, failed):
+        places = [[at for at, each in enumerate(rows) if drawn in each] for rows in (before, shown)]
+        assert places[0] == places[1]
+        assert [each.find("judged ") for each in shown if "judged " in each] == [
+            each.find("now  ") for each in before if "now  " in each
+        ]
+
+
+def test_a_curve_and_figures_tell_what_the_moves_gained_where_there_is_room() -> None:
+    challenge = next(each for each in PLAYED if isinstance(each.task, ExploitTask))
+    board = challenge.task.board("")
+    assert board is not None
+
+    def told() -> str:
+        return "\n".join(map(row_text, puzzle_beside(challenge, board, "", 200, 47, "braille")))
+
+    title, figures = board.curve()
+    assert title not in told()
+    assert not figures
+    for columns in (1, -1, 1):
+        board.move(columns, 0)
+    title, figures = board.curve()
+    assert len(figures) == 3
+    assert figures[0] < figures[2]
+    assert title in told()
+    paid, visits, moves = board.details(60)
+    assert [each.count("2") for each in map(row_text, visits) if "2" in each] == [1], "entered twice"
+    assert all(row_text(each[0]) in told() for each in (paid, visits, moves))
+
+
+def test_the_checks_of_a_puzzle_are_listed_the_newest_first() -> None:
+    def checked(number: int, medal: int, text: str) -> ProgressEvent:
+        time = f"2026-03-0{number}T10:00:00.000000+00:00"
+        return ProgressEvent(
+            str(number), time, EventKind.FINISH, "challenge-x", {"medal": medal, "text": text}
+        )
+
+    assert tries_rows([], 60) == []
+    assert tries_rows([checked(1, 0, BEGUN)], 60) == [], "the first look is no check"
+    shown = [row_text(each) for each in tries_rows([checked(1, 0, "none"), checked(2, 3, "best")], 60)]
+    assert "2 checks" in shown[0]
+    assert [each.split()[-2:] for each in shown[1:]] == [["G", "best"], [".", "none"]]

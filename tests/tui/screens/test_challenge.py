@@ -84,7 +84,7 @@ def test_a_challenge_is_opened_answered_and_rewarded(journal: ProgressJournal, t
         file.write_text(best_moves(FIRST.task))
         await seen(pilot, "gold (new)")  # saving it checks it
         await seen(pilot, "naive answer")
-        await seen(pilot, f"next {SECOND.title}")
+        await seen(pilot, f"next   {SECOND.title}")
         await pilot.press("c")
         await until(
             pilot, lambda: "gold" in "".join(rows(pilot)) and "(new)" not in "".join(rows(pilot)), "not new"

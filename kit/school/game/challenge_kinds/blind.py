@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import TypeAlias
@@ -14,6 +15,8 @@ from kit.school.game.board import (
     MOVES,
     Board,
     Cell,
+    cells_of_moves,
+    figure_rows,
     find_cell,
     free_cells,
     grid_rows,
@@ -116,6 +119,20 @@ class BlindBoard(MovesBoard):
             row(),
             row((f"  moves {len(self.moves)}", "bold"), f"   the robot may be in {len(belief)} places"),
         ]
+
+    def details(self, width: int) -> list[list[Row]]:
+        """How many of the squares where it may have begun lead to each square."""
+        grid = self._blind.grid
+        ends = Counter([cell, *cells_of_moves(grid, cell, self.moves)][-1] for cell in free_cells(grid))
+        counts = {cell: str(count) for cell, count in ends.items()}
+        ends_here = figure_rows("beginnings that lead to each square", grid, counts)
+        return [ends_here, self.moves_made(width)]
+
+    def curve(self) -> tuple[str, Sequence[float]]:
+        sizes = [
+            len(possible_cells(self._blind, self.moves[:count])) for count in range(1, len(self.moves) + 1)
+        ]
+        return "places where it may be after each move", sizes
 
 
 KIND = BlindTask

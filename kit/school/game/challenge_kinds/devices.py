@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -143,6 +144,21 @@ class DevicesBoard(Board):
                 (f"  lasers {len(self._lasers)}", "bold"),
                 f"   {len(seen)} of {len(task.places)} letters seen",
             ),
+        ]
+
+    def details(self, width: int) -> list[list[Row]]:
+        """What each laser sees, what it would see at the cursor, and what nothing sees yet."""
+        task = self._task
+        missed = sorted(set(task.places) - task.seen_from(self._lasers))
+
+        def told(name: str, names: Iterable[str]) -> Row:
+            return row(f" {name:<8}", (" ".join(sorted(names)) or "none", "bold"))
+
+        of_lasers = (told(f"{laser[0]},{laser[1]}", _visible_squares(task)[laser]) for laser in self._lasers)
+        here = told("cursor", _visible_squares(task)[self._cursor])
+        return [
+            [row(("letters in sight of", "dim")), here, *of_lasers],
+            [row(("letters that nothing sees", "dim")), row(f" {' '.join(missed) or 'none'}")],
         ]
 
 

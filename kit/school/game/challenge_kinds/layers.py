@@ -20,7 +20,7 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement, LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_files import is_file_there
-from kit.plain_text import counted
+from kit.plain_text import counted, wrap
 from kit.school.game.board import Board, History
 from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
@@ -143,10 +143,11 @@ class LayersBoard(Board):
         )
         return drawn(lines)
 
-    def details(self) -> list[Row]:
+    def details(self, width: int) -> list[list[Row]]:
         """All that is still wrong."""
         wrong = find_breaches(self._case, self._make_plan)
-        return [row(("still wrong", "dim")), *(row(f"  {each}") for each in wrong)] if wrong else []
+        lines = (line for each in wrong for line in wrap(str(each), width, "  ", "    "))
+        return [[row(("still wrong", "dim")), *map(row, lines)]] if wrong else []
 
     def move(self, columns: int, rows: int) -> None:
         self._row = max(0, min(self._row + rows, len(self._names) - 1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, partial
@@ -13,7 +13,19 @@ from typing import Final
 from kit.breadth_first import reached_from
 from kit.document.rows import Row, row
 from kit.plain_text import quoted
-from kit.school.game.board import MOVES, Board, Cell, find_cell, grid_rows, letters_of, shortest_way, step
+from kit.school.game.board import (
+    MOVES,
+    Board,
+    Cell,
+    cells_of_moves,
+    distances_to,
+    find_cell,
+    grid_rows,
+    letters_of,
+    shortest_way,
+    step,
+    visit_rows,
+)
 from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
@@ -179,6 +191,24 @@ class PassByBoard(Board):
             *plans,
             row((f"  ticks {ticks}", "bold"), f"   shown: after tick {tick}   {state}"),
         ]
+
+    def details(self, width: int) -> list[list[Row]]:
+        """How far each robot is from where it wants to be, and how often each square was entered."""
+        task, now = self._task, places(self._task, self._both_moves, MAX_TICKS)
+        left = [distances_to(task.grid, goal)[cell] for goal, cell in zip(task.goals, now, strict=True)]
+        togo = [row(f" {name}  {count:>2}") for name, count in zip("AB", left, strict=True)]
+        entered = [
+            cell
+            for start, moves in zip(task.starts, self._moves, strict=True)
+            for cell in cells_of_moves(task.grid, start, moves.replace(WAIT, ""))
+        ]
+        return [[row(("moves still to go at the end", "dim")), *togo], visit_rows(task.grid, entered)]
+
+    def curve(self) -> tuple[str, Sequence[float]]:
+        far = [distances_to(self._task.grid, goal) for goal in self._task.goals]
+        ticks = range(1, max(map(len, self._moves)) + 1)
+        both = (places(self._task, self._both_moves, tick) for tick in ticks)
+        return "moves still to go for both after each tick", [far[0][a] + far[1][b] for a, b in both]
 
 
 KIND = PassByTask

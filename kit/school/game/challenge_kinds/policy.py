@@ -24,6 +24,7 @@ from kit.school.game.board import (
     Cell,
     History,
     distances_to,
+    figure_rows,
     find_cell,
     free_cells,
     grid_rows,
@@ -319,6 +320,16 @@ class PolicyBoard(Board):
             row((worth, "bold")),
             row((f"  {task.prices}", "dim")),
         ]
+
+    def details(self, width: int) -> list[list[Row]]:
+        """What each square is worth under these arrows."""
+        cells = self._task.cells
+        values = _values(self._task, [self._policy[cell] for cell in cells])
+        worth = {
+            cell: f"{value:.2f}" if math.isfinite(value) else "never"
+            for cell, value in zip(cells, values, strict=True)
+        }
+        return [figure_rows("worth of each square", self._task.grid, worth)]
 
 
 KIND = PolicyTask

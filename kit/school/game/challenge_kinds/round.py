@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
 from kit.document.rows import Row, row
 from kit.plain_text import counted
-from kit.school.game.board import Board, Cell, distances_to, find_cell, grid_rows, shortest_way, step
+from kit.school.game.board import (
+    Board,
+    Cell,
+    cells_of_moves,
+    distances_to,
+    find_cell,
+    grid_rows,
+    shortest_way,
+    visit_rows,
+)
 from kit.school.game.challenge import AnswerSubmission
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
@@ -48,12 +58,9 @@ class RoundTask(MovesTask):
 
 def trace_moves(task: RoundTask, moves: str) -> tuple[Cell, set[str]]:
     """Where moves lead to, and the places that they do not come to."""
-    cell = find_cell(task.grid, "S")
-    passed = {cell}
-    for name in moves:
-        cell = step(task.grid, cell, name)
-        passed.add(cell)
-    return cell, {name for name, place in task.places.items() if place not in passed}
+    home = find_cell(task.grid, "S")
+    passed = [home, *cells_of_moves(task.grid, home, moves)]
+    return passed[-1], {name for name, place in task.places.items() if place not in passed}
 
 
 def _moves_through(task: RoundTask, names: str) -> str:
@@ -121,6 +128,26 @@ class RoundBoard(MovesBoard):
                 f"   {visited} of {len(task.places)} places, then home to S",
             ),
         ]
+
+    def details(self, width: int) -> list[list[Row]]:
+        """The places in the order in which they were come to, and how often each square was entered."""
+        cells = cells_of_moves(self._round.grid, find_cell(self._round.grid, "S"), self.moves)
+        reached = sorted(
+            (cells.index(place), name) for name, place in self._round.places.items() if place in cells
+        )
+        legs = [
+            row(f" {name}  after {number + 1:>3} moves", (f"  +{number - before}", "dim"))
+            for (number, name), before in zip(reached, [-1, *(number for number, _ in reached)], strict=False)
+        ]
+        order = [row(("moves to each letter", "dim")), *legs]
+        return [order, visit_rows(self._round.grid, cells), self.moves_made(width)]
+
+    def curve(self) -> tuple[str, Sequence[float]]:
+        left, counts = dict.fromkeys(self._round.places.values()), []
+        for cell in cells_of_moves(self._round.grid, find_cell(self._round.grid, "S"), self.moves):
+            left.pop(cell, None)
+            counts.append(len(left))
+        return "letters left after each move", counts
 
 
 KIND = RoundTask
