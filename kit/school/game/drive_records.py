@@ -30,6 +30,7 @@ from kit.school.game.player_progress import (
     is_best_drive,
     kept_rules,
     level_progress,
+    open_level_after,
 )
 from kit.school.game.race import DriverKind, RaceFinish, middle_drive
 from kit.school.game.references import reference_seconds
@@ -61,6 +62,8 @@ class DriveRecord:
     previous_medal: Medal
     unlocked: tuple[GameLevel, ...]
     """Other levels that this drive has opened."""
+    following: GameLevel | None
+    """The next level that is open; None after the last one, and after a day's."""
     belt: str
     """The belt of the level's world that this drive has earned; empty where it was earned before."""
     streak: int
@@ -144,6 +147,7 @@ def record_drive(
             for now, then in zip(after, before, strict=True)
             if now.is_open and not then.is_open and now.level != level
         ),
+        open_level_after(after, level),
         "" if belt == belt_before else belt,
         streak(events, today()) if level.id.startswith(DAILY_PREFIX) else 0,
         recording_file,

@@ -248,6 +248,13 @@ class GameSummary:
         return {**best, CHALLENGES_WORLD.title: tuple(self.challenges)}
 
 
+def open_level_after(progress: Sequence[LevelProgress], level: GameLevel) -> GameLevel | None:
+    """The next of all levels that is open; None after the last one, and for one that is none of them, as a day's."""
+    levels = [each.level for each in progress]
+    later = progress[levels.index(level) + 1 :] if level in levels else ()
+    return next((each.level for each in later if each.is_open), None)
+
+
 def is_best_drive(progress: LevelProgress, driver: DriverKind, finish: RaceFinish) -> bool:
     """Whether a drive is the driver's best one so far."""
     return finish.reached and finish.seconds < progress.best_times.get(driver, float("inf"))

@@ -110,6 +110,14 @@ def lead_rows(leads: Sequence[float], width: int, room: int) -> list[Row]:
     return [row(" ", *each) for each in stretched_chart(title, note, leads, width - MARGIN, LEAST_LEAD, rows)]
 
 
+def speed_rows(speeds: Sequence[float], width: int) -> list[Row]:
+    """A chart of the speed of a drive [m/s], from its beginning to its end."""
+    if len(speeds) < 2:
+        return []
+    chart = stretched_chart("speed", "m/s", speeds, width - MARGIN, LEAST_LEAD, CHART_ROWS)
+    return [row(" ", *each) for each in chart]
+
+
 def needed_rows(bins: Sequence[HistogramBin], width: int, unit: str = "s", decimals: int = 2) -> list[Row]:
     """A histogram of what all players of this machine needed; empty for one without bins."""
     most = max((each.count for each in bins), default=0)

@@ -10,7 +10,7 @@ from kit.document.rows import Row, row
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.tui.rows.medal_signs import MEDAL_SIGNS
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
 
 LIST_BAR, ABOUT_BAR, RESULT_BAR = 13, 34, 40
 """Columns of a ladder in the list of levels, below it, and at the end of a drive."""
@@ -63,16 +63,54 @@ def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> 
     return rows
 
 
+def rung_rows(driver: DriverKind, reference: float, seconds: float | None = None) -> list[Row]:
+    """A row for each rung, the highest first, with its time, and where a time stands among them with how far it is from each."""
+    rows = []
+    is_placed = seconds is None
+    for medal in reversed(RUNGS):
+        limit = medal_time(medal, reference, driver)
+        if seconds is not None and not is_placed and seconds <= limit:
+            rows.append(_here_row(seconds))
+            is_placed = True
+        apart = ""
+        if seconds is not None:
+            apart = (
+                f"  {seconds - limit:.2f} s away"
+                if seconds > limit
+                else f"  {limit - seconds:.2f} s to spare"
+            )
+        is_earned = seconds is not None and seconds <= limit
+        rows.append(
+            row(
+                (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]),
+                (f"{medal.title:<8}", "good" if is_earned else ""),
+                f" {limit:8.2f} s",
+                (apart, "dim"),
+            )
+        )
+    return rows if is_placed or seconds is None else [*rows, _here_row(seconds)]
+
+
+def _here_row(seconds: float) -> Row:
+    return row((f"{HERE} you      {seconds:8.2f} s", "bold"))
+
+
 def ladder_of_drive(
-    finish: RaceFinish, record: DriveRecord, driver: DriverKind, reference: float | None
+    finish: RaceFinish, record: DriveRecord, driver: DriverKind, reference: float | None, *, is_tall: bool
 ) -> list[Row]:
-    """The ladder of a drive that has ended; none where it earns nothing."""
+    """The ladder of a drive that has ended; none where it earns nothing. ``is_tall``: with a row for each rung."""
     if reference is None or record.is_shipped:
         return []
-    rows = ladder_rows(driver, reference, finish.seconds if finish.reached else None)
+    seconds = finish.seconds if finish.reached else None
+    if is_tall:
+        rungs = [row("   ", *each) for each in rung_rows(driver, reference, seconds)]
+        rows = [row((f"   ladder {driver.phrase}", "dim")), *rungs]
+    else:
+        rows = ladder_rows(driver, reference, seconds)
     unharmed = medal_of(replace(finish, collisions=0, is_apart=False), reference, driver)
     if unharmed > record.medal:
         bumps = "without the bump" if finish.collisions == 1 else "without the bumps"
         flaw = bumps if finish.collisions else "side by side"
-        rows[2:] = [row((f"   {flaw} it would have been {unharmed.title}", "dim"))]
+        told = [row((f"   {flaw} it would have been {unharmed.title}", "dim"))]
+        rows = [*rows, *told] if is_tall else [*rows[:2], *told]
     return rows

@@ -9,12 +9,11 @@ from kit.document.rows import Row, row, row_width, side_by_side
 from kit.plain_text import wrap
 from kit.school.game.ghosts import Ghost, Split, compare_tracks
 from kit.school.game.levels import GameLevel
-from kit.school.game.medal import RUNGS, medal_time
 from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
 from kit.tui.rows.drive_end_rows import sector_rows
-from kit.tui.rows.ladder_rows import RESULT_BAR, ladder_bar
-from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
+from kit.tui.rows.ladder_rows import RESULT_BAR, ladder_bar, rung_rows
+from kit.tui.rows.medal_signs import NO_STAR, STAR
 from kit.tui.rows.ruled_title import ruled_title
 
 COLUMN: Final = 54
@@ -64,13 +63,7 @@ def _ladder_rows(driver: DriverKind, reference: float, width: int) -> list[Row]:
         ruled_title("ladder", width, driver.phrase),
         row(*ladder_bar(driver, reference, None, min(width, RESULT_BAR))),
     ]
-    return rows + [
-        row(
-            (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]),
-            f"{medal.title:<8} {medal_time(medal, reference, driver):8.2f} s",
-        )
-        for medal in reversed(RUNGS)
-    ]
+    return [*rows, *rung_rows(driver, reference)]
 
 
 def star_rows(level: GameLevel, kept: Collection[ExtraRule], width: int) -> list[Row]:

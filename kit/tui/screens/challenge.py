@@ -26,7 +26,7 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import answers_needed_rows, beside_others, challenge_page, judged
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.lesson_rows import checking
-from kit.tui.rows.medal_rows import medal_drawing
+from kit.tui.rows.medal_rows import medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.level_pictures import task_picture
 from kit.tui.screens.picker import Picker, PickerItem
@@ -165,7 +165,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     @property
     def _drawing(self) -> list[Row]:
-        return medal_drawing(self._won, self.size.height)
+        return medal_drawing(self._won, medal_size(self.size.height))
 
     def _unavailable_actions(self) -> list[str]:
         return [

@@ -28,7 +28,6 @@ from kit.run.recording import Recording
 from kit.school.game.drive_records import DriveRecord, card_rows, save_card, save_film
 from kit.school.game.ghosts import Ghost, Split, gains_along
 from kit.school.game.levels import GameLevel
-from kit.school.game.medal import Medal
 from kit.school.game.players_histogram import histogram, seconds_needed
 from kit.school.game.race import (
     DriverKind,
@@ -36,13 +35,15 @@ from kit.school.game.race import (
 )
 from kit.school.game.starts import film_scenario
 from kit.school.lessons.shell_lines import shell_path
+from kit.tui.input.drive_keys import drive_key
 from kit.tui.rows import drive_end_rows, level_rows
+from kit.tui.rows.chart_rows import CHART_ROWS
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
-from kit.tui.rows.medal_rows import DRAWN_COLUMNS, medal_drawing
+from kit.tui.rows.medal_rows import SMALL, SPARKS, drawn_columns, medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.lesson_drive import RecordingScreen
-from kit.tui.screens.level_pictures import ghost_paths, scene_of
+from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
 from kit.tui.suspend import edit_aside
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
@@ -53,6 +54,8 @@ REVEAL_INTERVAL: Final = 0.3
 """Between two rows that appear [s]."""
 BELL_VARIABLE: Final = "KIT_BELL"
 """If set to 1, the terminal's bell rings for a new medal."""
+MOST_REVEALS: Final = 14
+"""Of rows, in few enough steps that a long page is whole in a few seconds."""
 WIDTH: Final = 74
 FINISH_WIDTH: Final = 40
 FINISH_ROWS: Final = 3
@@ -69,10 +72,14 @@ LEAST_BESIDE_ROWS, MOST_BESIDE_ROWS = 9, 12
 """Of that map."""
 LEAST_MAP_ROWS: Final = 7
 """Of the map below the result; where there are fewer it is left out."""
-SPARKS: Final = 10
-"""Pictures of a first gold's second of joy."""
+LADDER_COLUMNS: Final = 42
+"""Columns of the ladder beside the next level."""
+NEXT_ROWS: Final = 7
+"""Of the next level's picture."""
 SPARK_INTERVAL: Final = 0.1
-"""Between two of them [s]."""
+"""Between two pictures of the flourish [s]."""
+SPEED_INTERVAL: Final = 0.1
+"""Between two speeds of a chart [s]."""
 QUICKER, SLOWER = 0.005, 0.03
 """A part of a drive is coloured as quicker than the ghost from this gain on, as slower from this loss on [s]."""
 
@@ -124,10 +131,11 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._result = result
         self._workspace = workspace
         finish, record = result.finish, result.record
-        self._ladder = [
-            *ladder_of_drive(finish, record, result.driver, result.reference),
-            *level_rows.starts_rows(result.finishes, record.counts),
-        ]
+        self._rungs, self._ladder = (
+            ladder_of_drive(finish, record, result.driver, result.reference, is_tall=is_tall)
+            for is_tall in (True, False)
+        )
+        self._starts = level_rows.starts_rows(result.finishes, record.counts)
         self._times = [
             *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
             *drive_end_rows.sector_rows(result.splits),
@@ -135,12 +143,15 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._photo_finish = photo_finish(result)
         self._leads: list[float] = []
         """How far ahead of the reference it was on its way [s], once that is known."""
+        self._speeds = speeds_of(result)
+        self._next_picture: list[str] = []
+        """The next level, once it is drawn."""
         self._won = drive_end_rows.won_besides(result.level, record)
         self._needed: list[Row] = []
         """What all players needed, once that is known."""
         self._shown = 0
         self._note: Row = ()
-        self._spark = SPARKS if self._is_joyful and not theme.terminal.reduce_motion.value else 0
+        self._spark = SPARKS if self._has_new_medal and not theme.terminal.reduce_motion.value else 0
         self._world = WorldView(lambda: theme.encoder, theme.palette)
 
     @property
@@ -155,10 +166,10 @@ class DriveResultScreen(ModalScreen[Wish]):
         ]
 
     @property
-    def _is_joyful(self) -> bool:
-        """Whether this is the first gold of its driver here, or better."""
+    def _has_new_medal(self) -> bool:
+        """Whether this medal is better than those of its driver here before."""
         record = self._result.record
-        return record.medal >= Medal.GOLD > record.previous_medal
+        return record.medal > record.previous_medal
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="text")
@@ -167,8 +178,7 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     def on_mount(self) -> None:
         self._show()
-        record = self._result.record
-        if os.environ.get(BELL_VARIABLE) == "1" and record.medal > max(Medal.NONE, record.previous_medal):
+        if os.environ.get(BELL_VARIABLE) == "1" and self._has_new_medal:
             self.app.bell()
         self._timer = self.set_interval(REVEAL_INTERVAL, self._reveal)
         if self._spark:
@@ -179,6 +189,11 @@ class DriveResultScreen(ModalScreen[Wish]):
     async def _draw_map(self) -> None:
         result = self._result
         self._world.show(await to_thread(scene_of_drive, result))
+        if result.record.following is not None and result.finish.reached:
+            glyphs = self._theme.terminal.glyphs.value
+            size = WIDTH - LADDER_COLUMNS - MARGIN, NEXT_ROWS
+            self._next_picture = await to_thread(picture_of, result.record.following, *size, glyphs)
+            self._show()
         if not result.finish.reached:
             return
         seconds = await to_thread(seconds_needed, result.level, result.driver)
@@ -193,16 +208,28 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._spark -= 1
         if self._spark <= 0:
             self._sparks.stop()
+            self._place_map()
         self._show()
 
+    def on_key(self, event: events.Key) -> None:
+        """Any key ends the flourish, but one that may still be held from driving."""
+        if self._spark and drive_key(event.key) is None:
+            self._spark = 1
+            self._twinkle()
+
     def _reveal(self) -> None:
-        self._shown += 1
+        self._shown += max(1, len(self._revealed) // MOST_REVEALS)
         if self._shown >= len(self._revealed):
             self._timer.stop()
         self._show()
 
     def on_resize(self, event: events.Resize) -> None:
-        width, height = event.size
+        self._place_map()
+        self._show()
+
+    def _place_map(self) -> None:
+        """Places the map beside or below the text; a small one comes after the flourish, which has its place."""
+        width, height = self.app.size
         self.set_class(width >= WIDE, "-wide")
         self.set_class(False, "-high")
         self.set_class(False, "-beside")
@@ -211,14 +238,14 @@ class DriveResultScreen(ModalScreen[Wish]):
         self.set_class(is_high, "-high")
         self.set_class(NARROW <= width < WIDE and not is_high, "-beside")
         is_beside = self.has_class("-beside")
-        self._world.styles.margin = (len(self._fixed) if is_beside else 0, 0, 0, 0)
+        self._world.visible = not (is_beside and self._spark and not self._above)
+        self._world.styles.margin = (len(self._fixed) + len(self._above) if is_beside else 0, 0, 0, 0)
         self._world.styles.height = len(self._beside_map) if is_beside else "1fr"
-        self._show()
 
     @property
     def _medal(self) -> list[Row]:
         """The medal as a drawing, where there is room for it."""
-        return medal_drawing(self._result.record.medal, self.app.size.height, self._spark)
+        return medal_drawing(self._result.record.medal, medal_size(self.app.size.height), self._spark)
 
     @property
     def _above(self) -> list[Row]:
@@ -227,7 +254,8 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     @property
     def _earned(self) -> list[Row]:
-        width = LEFT if self.has_class("-beside") or self._medal else WIDTH
+        column = drawn_columns(medal_size(self.app.size.height))
+        width = LEFT if self.has_class("-beside") else WIDTH - MARGIN - (column if self._medal else 0)
         return drive_end_rows.earned(self._result.level, self._result.finish, self._result.record, width)
 
     @property
@@ -236,6 +264,13 @@ class DriveResultScreen(ModalScreen[Wish]):
         count = len(self._earned) + len(self._times) + len(self._won)
         has_room = count <= MOST_BESIDE_ROWS and all(row_width(each) <= LEFT for each in self._won)
         return self.has_class("-beside") and has_room
+
+    @property
+    def _are_rungs_beside(self) -> bool:
+        """Whether the rungs have room beside a small map, each on a row."""
+        count = len(self._earned) + len(self._times) + len(self._won) * self._is_won_beside
+        has_room = count + len(self._rungs) <= MOST_BESIDE_ROWS
+        return has_room and all(row_width(each) <= LEFT for each in self._rungs)
 
     @property
     def _after_finish(self) -> list[Row]:
@@ -249,20 +284,37 @@ class DriveResultScreen(ModalScreen[Wish]):
     def _beside_map(self) -> list[Row]:
         """The rows that a small map stands beside."""
         rows = [*self._earned, *self._times, *(self._won if self._is_won_beside else [])]
-        below = len(self._ladder) + len(self._after_finish)
+        rows += self._rungs if self._are_rungs_beside else []
+        below = len(self._ladder_below) + len(self._after_finish)
         room = self._room - below
         if room - len(self._photo_finish) >= max(LEAST_BESIDE_ROWS, len(rows)):
             room -= len(self._photo_finish)
         return [*rows, *[row()] * (min(max(LEAST_BESIDE_ROWS, room), MOST_BESIDE_ROWS) - len(rows))]
 
     @property
+    def _ladder_below(self) -> list[Row]:
+        """The ladder below a small map."""
+        return [*([] if self._are_rungs_beside else self._ladder), *self._starts]
+
+    @property
     def _before_finish(self) -> list[Row]:
         if self.has_class("-beside"):
-            return [*self._beside_map, *self._ladder]
-        if medal := self._medal:
-            rows = [*self._earned, *self._times]
-            return [*rows, *[row()] * (len(medal) - len(rows)), *self._ladder]
-        return [*self._earned, *self._ladder, *self._times]
+            return [*self._beside_map, *self._ladder_below]
+        size = medal_size(self.app.size.height)
+        if not size:
+            return [*self._earned, *self._ladder, *self._starts, *self._times]
+        rows = [*self._earned, *self._times]
+        rungs = side_by_side(self._rungs, self._next_rows, LADDER_COLUMNS)
+        return [*rows, *[row()] * (len(self._medal) - len(rows)), row(), *rungs, *self._starts]
+
+    @property
+    def _next_rows(self) -> list[Row]:
+        """The next level as a picture below its title; none after the last one, and where this one was not finished."""
+        following = self._result.record.following
+        if following is None or not self._result.finish.reached:
+            return []
+        picture = self._next_picture or [""] * NEXT_ROWS
+        return [row(("next level  ", "dim"), (following.title, "bold")), *map(row, picture)]
 
     @property
     def _revealed(self) -> list[Row]:
@@ -271,8 +323,13 @@ class DriveResultScreen(ModalScreen[Wish]):
         before, finish, needed = self._before_finish, self._photo_finish, self._needed
         rows = [*before, *finish, *self._after_finish, *needed]
         if (room := self._room - len(rows)) >= 0:
-            lead = drive_end_rows.lead_rows(self._leads, WIDTH - MARGIN, room)
-            return [*rows, *lead] if len(lead) <= room else rows
+            speed = drive_end_rows.speed_rows(self._speeds, WIDTH - MARGIN)
+            lead = drive_end_rows.lead_rows(
+                self._leads, WIDTH - MARGIN, max(CHART_ROWS + 2, room - len(speed))
+            )
+            lead = lead if len(lead) <= room else []
+            speed = speed if len(speed) + len(lead) <= room else []
+            return [*rows, *speed, *lead]
         rows = [*before, *self._after_finish, *needed]
         return rows if len(rows) <= self._room else [*before, *self._after_finish]
 
@@ -294,8 +351,12 @@ class DriveResultScreen(ModalScreen[Wish]):
         keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         hidden = [row()] * max(0, len(revealed) - self._shown)  # what is below keeps its place
         rows = [*revealed[: self._shown], *hidden]
+        size = medal_size(self.app.size.height)
         if medal := self._medal if not self._above else []:
-            rows = [*side_by_side(medal, rows[: len(medal)], DRAWN_COLUMNS), *rows[len(medal) :]]
+            rows = [*side_by_side(medal, rows[: len(medal)], drawn_columns(size)), *rows[len(medal) :]]
+        elif self._spark and self.has_class("-beside") and not size:
+            drawn = medal_drawing(self._result.record.medal, SMALL, self._spark)
+            rows = [*side_by_side(rows[: len(drawn)], drawn, LEFT), *rows[len(drawn) :]]
         rows = [*self._fixed, *self._above, *rows, self._note]
         for text in self.query(TextRows):  # none where the kit is left meanwhile
             text.show([keys] if text.id == "keys" else rows)
@@ -389,6 +450,15 @@ def leads_over_reference(result: DriveResult) -> list[float]:
     gains = gains_along(_own_track(result), result.recording.step_size, reference)[:, 4]
     leads: list[float] = np.nancumsum(gains).tolist()
     return leads
+
+
+def speeds_of(result: DriveResult) -> list[float]:
+    """The speed of a drive [m/s] from tenth to tenth of a second, up to where it ended."""
+    step = max(1, round(SPEED_INTERVAL / result.recording.step_size))
+    places = _own_track(result)[: round(result.finish.seconds / result.recording.step_size) + 1 : step, :2]
+    distances = np.hypot(*np.diff(places, axis=0).T)
+    speeds: list[float] = (distances / (step * result.recording.step_size)).tolist()
+    return speeds
 
 
 def _reference_of(result: DriveResult) -> Ghost | None:

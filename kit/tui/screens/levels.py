@@ -36,6 +36,7 @@ from kit.school.game.player_progress import (
     belt_of,
     completed_lessons,
     level_progress,
+    open_level_after,
 )
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.references import reference_recording, reference_seconds
@@ -592,19 +593,10 @@ class LevelsScreen(RowsScreen[None]):
             return
         if level.id.startswith(DAILY_PREFIX):
             self.action_leaderboard()  # the board of the day
-        elif (following := self._level_after(level)) is not None:
-            self._at = following
+        elif (following := open_level_after(self._found, level)) is not None:
+            self._at = self._levels.index(following)
             self._load_ghosts()
             await self._drive(self.chosen.level, driver, program, facts, agent)
-
-    def _level_after(self, level: GameLevel) -> int | None:
-        """The number of the next level that is open; None after the last one."""
-        if level not in self._levels:  # the daily challenge
-            return None
-        at = self._levels.index(level)
-        return next(
-            (number for number in range(at + 1, len(self._found)) if self._found[number].is_open), None
-        )
 
     @work(exclusive=True, group="drive")
     async def action_replay(self) -> None:

@@ -538,6 +538,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
         9.0,
         Medal.BRONZE,
         LEVELS[1:4],
+        LEVELS[1],
         "yellow",
         2,
         None,
@@ -655,25 +656,61 @@ def test_a_result_that_is_left_while_its_film_is_written_is_gone_and_the_film_is
 
 
 @pytest.mark.parametrize("still", [False, True])
-def test_a_first_gold_has_a_second_of_joy_unless_motion_is_reduced(
-    progress: ProgressJournal, tmp_path: Path, still: bool
+@pytest.mark.parametrize("size", [(80, 24), (120, 36)])
+def test_a_new_medal_has_a_flourish_that_any_key_ends_unless_motion_is_reduced(
+    progress: ProgressJournal,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    still: bool,
+    size: tuple[int, int],
 ) -> None:
+    monkeypatch.setattr(level_result, "SPARK_INTERVAL", 3600.0)
     workspace = prepare_workspace(tmp_path / "desk")
     result = result_of(workspace, progress)
+    won = replace(result, record=replace(result.record, medal=Medal.BRONZE))
 
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         facts = screen._theme.terminal
         theme = replace(
             screen._theme, terminal=replace(facts, reduce_motion=replace(facts.reduce_motion, value=still))
         )
-        dialog = DriveResultScreen(theme, result, workspace)
-        again = replace(result, record=replace(result.record, previous_medal=Medal.GOLD))
+        again = replace(won, record=replace(won.record, previous_medal=Medal.BRONZE))
         assert DriveResultScreen(theme, again, workspace)._spark == 0, "only once"
+        dialog = DriveResultScreen(theme, won, workspace)
         assert (dialog._spark > 0) is not still
         await screen.app.push_screen(dialog)
-        await wait_until_shown(pilot, lambda: dialog._spark == 0)
+        await pilot.press("w")  # still held from driving
+        assert (dialog._spark > 0) is not still
+        assert dialog._world.visible is (still or size[0] > 80)
+        assert ("▀██████████▀" in flat(screen.app)) is (not still or size[0] > 80), "the medal's disc"
+        await pilot.press("x")
+        assert dialog._spark == 0
+        assert dialog._world.visible
 
-    play(scene, progress, tmp_path / "desk", (120, 36))
+    play(scene, progress, tmp_path / "desk", size)
+
+
+@pytest.mark.parametrize("size", [(120, 36), (200, 50)])
+def test_the_end_of_a_drive_shows_all_rungs_and_the_next_level(
+    progress: ProgressJournal, tmp_path: Path, size: tuple[int, int]
+) -> None:
+    workspace = prepare_workspace(tmp_path / "desk")
+    result = result_of(workspace, progress)
+    following = result.record.following
+    assert following is not None
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        dialog = DriveResultScreen(screen._theme, result, workspace)
+        await screen.app.push_screen(dialog)
+        await pilot.press("enter")
+        await wait_until_shown(pilot, lambda: bool(dialog._next_picture) and "ahead of" in flat(screen.app))
+        shown = flat(screen.app)
+        assert following.title in shown
+        order = [shown.index(f" {each} ") for each in ("record", "master", "you", "silver", "bronze")]
+        assert order == sorted(order), "the time stands among the rungs"
+        assert ("m/s" in shown) is (size[1] == 50)
+
+    play(scene, progress, tmp_path / "desk", size)
 
 
 @pytest.mark.long
