@@ -25,6 +25,7 @@ from kit.school.game.drive_commands import DriveCommand, ReferenceDrive
 from kit.school.game.levels import (
     SPEED,
     TURN_RATE,
+    ExtraRules,
     GameLevel,
     LevelConditions,
     UnknownLevel,
@@ -137,6 +138,7 @@ def daily_level(day: datetime.date) -> GameLevel:
         story="A new maze every day, the same for everybody.",
         skill="finding the way before the clock starts",
         time_limit=math.ceil(5.0 * reference.seconds),
+        rules=ExtraRules(max_training_steps=None),
         conditions=LevelConditions(fog=fog),
         day=day,
         drive=reference,

@@ -120,7 +120,8 @@ class ExtraRules:
 
     max_lines: int = MAX_LINES
     """Lines of code of a program, without comments and docstrings."""
-    max_training_steps: int = MAX_TRAINING_STEPS
+    max_training_steps: int | None = MAX_TRAINING_STEPS
+    """None: no agent is trained for it, as in a day."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,7 +40,17 @@ class ExtraRule(StrEnum):
             ExtraRule.NO_STOP: "never stood still on the way",
             ExtraRule.ONE_SENSOR: "a program or agent that listens to one sensor",
             ExtraRule.FEW_LINES: f"a program of at most {level.rules.max_lines} lines of code",
-            ExtraRule.FEW_STEPS: f"an agent of at most {level.rules.max_training_steps:,} training steps",
+            ExtraRule.FEW_STEPS: f"an agent of at most {level.rules.max_training_steps or 0:,} training steps",
+        }[self]
+
+    def short_name(self, level: GameLevel) -> str:
+        """The same in a few words."""
+        return {
+            ExtraRule.CLEAN: "touched nothing",
+            ExtraRule.NO_STOP: "no stop",
+            ExtraRule.ONE_SENSOR: "one sensor",
+            ExtraRule.FEW_LINES: f"{level.rules.max_lines} lines",
+            ExtraRule.FEW_STEPS: f"{level.rules.max_training_steps or 0:,} steps",
         }[self]
 
 
@@ -59,6 +69,12 @@ class DriverFacts:
 BY_HAND: Final = DriverFacts()
 
 
+def offered_rules(level: GameLevel) -> tuple[ExtraRule, ...]:
+    """The rules that earn stars on a level."""
+    is_for_agents = level.rules.max_training_steps is not None
+    return tuple(rule for rule in ExtraRule if is_for_agents or rule is not ExtraRule.FEW_STEPS)
+
+
 def kept_rules(level: GameLevel, finish: RaceFinish, facts: DriverFacts) -> tuple[ExtraRule, ...]:
     """The extra rules that a drive kept; none where it did not reach the goal."""
     if not finish.reached or facts.is_shipped:
@@ -69,6 +85,7 @@ def kept_rules(level: GameLevel, finish: RaceFinish, facts: DriverFacts) -> tupl
         ExtraRule.ONE_SENSOR: finish.sensors is not None and finish.sensors <= 1,
         ExtraRule.FEW_LINES: facts.code_lines is not None and facts.code_lines <= level.rules.max_lines,
         ExtraRule.FEW_STEPS: facts.training_steps is not None
+        and level.rules.max_training_steps is not None
         and facts.training_steps <= level.rules.max_training_steps,
     }
     return tuple(rule for rule in ExtraRule if kept[rule])

@@ -9,7 +9,7 @@ from kit.document.rows import Row, row, row_width, side_by_side
 from kit.plain_text import wrap
 from kit.school.game.ghosts import Ghost, Split, compare_tracks
 from kit.school.game.levels import GameLevel
-from kit.school.game.player_progress import ExtraRule
+from kit.school.game.player_progress import ExtraRule, offered_rules
 from kit.school.game.race import DriverKind
 from kit.tui.rows.drive_end_rows import sector_rows
 from kit.tui.rows.ladder_rows import RESULT_BAR, ladder_bar, rung_rows
@@ -69,13 +69,25 @@ def _ladder_rows(driver: DriverKind, reference: float, width: int) -> list[Row]:
 def star_rows(level: GameLevel, kept: Collection[ExtraRule], width: int) -> list[Row]:
     """The rules that earn stars, those that a drive has kept with theirs."""
     rows = [ruled_title("stars", width)]
-    for rule in ExtraRule:
+    for rule in offered_rules(level):
         sign, style, text = NO_STAR, "", rule.description(level)
         if rule in kept:
             sign, style = STAR, "warn"
         first, *rest = wrap(text, width - 2)
         rows += [row((f"{sign} ", style), first), *(row("  ", each) for each in rest)]
     return rows
+
+
+def star_line(level: GameLevel, kept: Collection[ExtraRule]) -> Row:
+    """The same on one row, in few words."""
+    rules = (
+        (STAR if rule in kept else NO_STAR, "warn" if rule in kept else "", rule)
+        for rule in offered_rules(level)
+    )
+    parts = [
+        part for sign, style, rule in rules for part in ((f"{sign} ", style), f"{rule.short_name(level)}  ")
+    ]
+    return row((" stars ", "dim"), *parts)
 
 
 def best_splits(ghosts: Sequence[Ghost]) -> tuple[DriverKind, tuple[Split, ...]] | None:

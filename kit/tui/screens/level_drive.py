@@ -173,6 +173,8 @@ class LevelDrive(WatchScreen):
         if self._is_daily and not self._is_practice:
             self._ghost_paths = ()  # finding the way is what the first run is about
         self.wish: Wish = "back"
+        self.has_given_up = False
+        """Whether the run that counted for today was left."""
 
     @property
     def has_started(self) -> bool:
@@ -488,10 +490,14 @@ class LevelDrive(WatchScreen):
         self._is_practice = has_run(self._progress.events(subject=self._level.id), self._level)
         self.open_world()
 
+    @property
+    def _is_run_of_the_day(self) -> bool:
+        """Whether the run that counts for today goes on."""
+        return self._is_daily and not self._is_practice and self.has_started and not self._is_over
+
     def _warns_of_the_end(self) -> bool:
         """Says once that a key would end the run that counts for today; whether it has just said so."""
-        counts = self._is_daily and not self._is_practice and self.has_started and not self._is_over
-        if not counts or self._has_warned:
+        if not self._is_run_of_the_day or self._has_warned:
             return False
         self._has_warned = True
         self._notice = level_rows.GIVES_UP
@@ -521,4 +527,5 @@ class LevelDrive(WatchScreen):
     def action_back(self) -> None:
         if self._cut_short is not None or not self._warns_of_the_end():
             self._is_left = True
+            self.has_given_up = self._is_run_of_the_day and self._cut_short is None
             self.dismiss()

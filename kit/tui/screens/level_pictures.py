@@ -10,7 +10,8 @@ from typing import Final
 import numpy as np
 
 from kit.document.rows import Row, row, side_by_side
-from kit.render.encode import ENCODERS
+from kit.render.encode import ASCII_GLYPHS, ENCODERS, UNICODE_GLYPHS
+from kit.render.floor_plan import floor_plan
 from kit.render.roles import Role
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
@@ -25,6 +26,8 @@ from kit.school.lessons.records import Lesson
 ROOM_FOR_THREE: Final = 100
 """Columns from which on three pictures stand beside each other."""
 PICTURE_GAP: Final = 4
+TARGET_SIGNS: Final = {False: UNICODE_GLYPHS.target, True: ASCII_GLYPHS.target}
+"""A target on a small picture, without and with ASCII alone."""
 WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
 GHOST_LOOKS: Final = {
@@ -58,14 +61,11 @@ def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[s
     """A small picture: walls, targets and the start."""
     scenario = level.find_scenario()
     places = level.targets or (() if scenario.case is None else (scenario.case.target,))
-    radius = 0.0 if scenario.case is None else scenario.case.target_radius
-    scene = Scene(
-        walls=scenario.world.wall_segments,
-        targets=tuple(Disc(x, y, radius) for x, y in places),
-        marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
-        passage=0.0 if scenario.driven is None else scenario.driven.width,
+    start, is_ascii = scenario.starts[0], glyphs == "ascii"
+    signs = dict.fromkeys(places, TARGET_SIGNS[is_ascii]) | {(start.x, start.y): "S"}
+    return floor_plan(
+        scenario.world.wall_segments, (start.x, start.y), signs, columns, rows, ascii_only=is_ascii
     )
-    return scene_rows(scene, columns, rows, ENCODERS[glyphs](False))
 
 
 def task_picture(task: str, columns: int, rows: int, glyphs: str) -> list[Row]:

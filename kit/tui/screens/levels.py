@@ -17,7 +17,7 @@ from textual.containers import Horizontal
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
-from kit.document.rows import Row, at_both_edges, fitted, row, side_by_side
+from kit.document.rows import Row, at_both_edges, fitted, row, row_width, side_by_side
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
@@ -45,7 +45,7 @@ from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.level_card_rows import COLUMN, best_splits, stars_and_sectors
+from kit.tui.rows.level_card_rows import COLUMN, best_splits, star_line, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.rows.progress_marks import share_bar
 from kit.tui.screens.agents import agent_items
@@ -83,6 +83,15 @@ NEW_AGENT: Final = " "
 """Instead of the name of a run, of which none is blank."""
 STARTS: Final = (*DRIVE_ACTIONS, "open", "daily")
 """Actions that begin a drive or a replay."""
+GIVEN_UP: Final = (
+    "Today's run has counted, without a finish. d drives the maze again as practice, f shows the board of the day; "
+    "tomorrow there is another one."
+)
+"""What is said of a run of the day that was left."""
+ROOM_FOR_WORDS: Final = 100
+"""Columns from which on the line of keys has its usual words."""
+SHORT_WORDS: Final = {"leaderboard": "board", "two_players": "players"}
+"""Words of keys where there are fewer, by action."""
 ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
 ROWS_AROUND: Final = 2
@@ -95,7 +104,7 @@ class LevelsScreen(RowsScreen[None]):
     AUTO_FOCUS = ""
     screen_actions = ScreenActions(
         "levels",
-        ("choose", "open", "hand_over", "agent", "replay", "leaderboard", "daily", "two_players", "help", "back"),
+        ("open", "hand_over", "agent", "leaderboard", "two_players", "replay", "daily", "choose", "help", "back"),
         own=(
             letter("agent", "a", "agent", "let an agent that you trained drive the level"),
             letter("leaderboard", "f", "leaderboard", "show this machine's leaderboard"),
@@ -243,11 +252,18 @@ class LevelsScreen(RowsScreen[None]):
         listed, about = self._level_rows() if challenge is None else self._challenge_rows(challenge)
         self._rows("map").show(listed)
         self._rows("about").show([*about[: ABOUT_ROWS - 1], self._doing_row()] if self._doing else about)
-        without = () if challenge is None else DRIVE_ACTIONS
-        labels = {"open": "drive"} if challenge is None else {}
-        self._rows("keys").show(
-            [footer(self.screen_actions, self.size.width, without=without, labels=labels)]
-        )
+        labels = {} if challenge is not None else {"open": "drive"}
+        if self.size.width < ROOM_FOR_WORDS:
+            labels |= SHORT_WORDS
+        keys = footer(self.screen_actions, self.size.width, without=self._unavailable, labels=labels)
+        self._rows("keys").show([keys])
+
+    @property
+    def _unavailable(self) -> tuple[str, ...]:
+        """Actions that do nothing for what is chosen."""
+        if self.chosen_challenge is not None:
+            return DRIVE_ACTIONS
+        return () if self.chosen.best_times else ("replay",)
 
     def _world_heading(self, best: Sequence[Medal]) -> list[Row]:
         """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
@@ -274,9 +290,11 @@ class LevelsScreen(RowsScreen[None]):
             *map_rows(levels, self._map_places(), self._pictures, level.id),
         ]
         ghosts = self._known.get(level.id, ())
-        about = level_rows.about(self.chosen, ghosts, self._references[level.id], self.size.width)
-        about = [fitted(each, self.size.width) for each in about]
-        if self.size.width >= ABOUT_COLUMN + COLUMN:
+        is_beside = self.size.width >= ABOUT_COLUMN + COLUMN
+        width = ABOUT_COLUMN - 1 if is_beside else self.size.width
+        about = level_rows.about(self.chosen, ghosts, self._references[level.id], width)
+        about = [fitted(each, width) for each in about]
+        if is_beside:
             about = side_by_side(about, self._card_rows(self.size.width - ABOUT_COLUMN - 1), ABOUT_COLUMN)
         return listed, about
 
@@ -289,12 +307,16 @@ class LevelsScreen(RowsScreen[None]):
         return stars_and_sectors(level, self.chosen.rules, best, width)
 
     def _card_below(self) -> list[Row]:
-        """The card below the list, where it does not stand beside what is said of the level; none where there is no room."""
-        width = self._rows("map").size.width
-        if self.size.width >= ABOUT_COLUMN + COLUMN or self._rows_below_levels <= len(ExtraRule):
+        """The card below the list, where it does not stand beside what is said of the level: its stars alone where there is no
+        more room, none where there is none."""
+        width, room = self._rows("map").size.width, self._rows_below_levels
+        if self.size.width >= ABOUT_COLUMN + COLUMN:
             return []
         rows = self._card_rows(width - 1)
-        return [*rows, row()] if 0 < len(rows) <= self._rows_below_levels else []
+        if rows and len(rows) <= room and room > len(ExtraRule):
+            return [*rows, row()]
+        stars = star_line(self.chosen.level, self.chosen.rules)
+        return [stars, row()][:room] if rows and room > 0 and row_width(stars) <= width else []
 
     @property
     def _rows_below_levels(self) -> int:
@@ -589,6 +611,8 @@ class LevelsScreen(RowsScreen[None]):
         )
         await self.app.push_screen_wait(screen)
         self._refresh_after_drive(level)
+        if screen.has_given_up:
+            self.app.push_screen(MessageDialog(f"{level.title}: given up", GIVEN_UP))
         if screen.wish != "next":
             return
         if level.id.startswith(DAILY_PREFIX):
@@ -612,7 +636,7 @@ class LevelsScreen(RowsScreen[None]):
         if reference is not None and recordings:  # first it is driven, then the reference is shown
             recordings["reference"] = reference
         if not recordings:
-            text = "Drive this level first, then its best drive and the reference can be replayed."
+            text = "w replays drives, and of this level there is none yet that reached the goal. Enter drives it."
             self.app.push_screen(MessageDialog("Nothing to replay yet", text))
             return
         choices = [PickerItem(name, name, "") for name in recordings]

@@ -27,7 +27,7 @@ from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.medal import Medal
-from kit.school.game.player_progress import ExtraRule
+from kit.school.game.player_progress import ExtraRule, offered_rules
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
@@ -414,6 +414,24 @@ def test_leaving_the_run_of_the_day_is_asked_twice_and_uses_it_up(
     assert ghosts.load_unfinished(prepare_workspace(tmp_path / "desk")) is None
 
 
+def test_who_gives_up_the_run_of_the_day_is_told_what_became_of_it(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: "> First drive" in flat(pilot.app))
+        await pilot.press("d")
+        await first_key(pilot)
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: "This run counts for today" in flat(pilot.app))
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
+        assert "has counted" in flat(pilot.app)
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
+
+    play(scene, progress, tmp_path / "desk")
+
+
 @pytest.mark.long
 def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
     progress: ProgressJournal, tmp_path: Path
@@ -688,6 +706,35 @@ def test_a_new_medal_has_a_flourish_that_any_key_ends_unless_motion_is_reduced(
         assert dialog._world.visible
 
     play(scene, progress, tmp_path / "desk", size)
+
+
+def test_on_80_columns_no_key_of_the_levels_is_missing_and_the_stars_are_seen(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: "> First drive" in flat(pilot.app))
+        keys = flat(pilot.app)
+        keys = keys[keys.rindex("Enter") :]
+        assert [word for word in ("g ", "a ", "f ", "2 ", "Esc ") if f" {word}" not in keys] == []
+        assert "w replay" not in keys, "nothing was driven"
+        assert all(rule.short_name(LEVELS[0]) in flat(pilot.app) for rule in ExtraRule)
+        record_drive(
+            progress,
+            prepare_workspace(tmp_path / "desk"),
+            LEVELS[0],
+            DriverKind.KEYS,
+            [keys_drive(LEVELS[0])],
+        )
+        screen._refresh_after_drive(LEVELS[0])
+        await wait_until_shown(pilot, lambda: "w replay" in flat(pilot.app))
+
+    play(scene, progress, tmp_path / "desk")
+
+
+def test_the_day_offers_no_star_that_nobody_can_earn() -> None:
+    offered = offered_rules(daily_level(today()))
+    assert ExtraRule.FEW_STEPS not in offered
+    assert offered_rules(LEVELS[0]) == tuple(ExtraRule)
 
 
 @pytest.mark.parametrize("size", [(120, 36), (200, 50)])
