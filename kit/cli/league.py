@@ -72,8 +72,8 @@ def command(context: click.Context, workspace: Path | None, folder: Path | None,
 
     In a race each entrant drives a level alone, from five starts, and the middle drives are compared. At tag two robots share
     one world: a program is told is_catcher (std_msgs/Bool) and, as goal_pose (geometry_msgs/PoseStamped), where the
-    other robot is; it has a namespace of its own and can use no name outside. Who was the catcher for the shorter time has
-    won; each pair plays twice. Programs are confined as when they are graded.
+    other robot is; it has a namespace of its own and can use no name outside. Each second counts against the catcher, or
+    against the other one while that alone stands still; each pair plays twice. Programs are confined as when they are graded.
 
     Ratings follow Bradley and Terry: 400 points more mean ten times as many wins. Only the commands of a drive are stored:
     everybody's kit runs them again and judges them, so a result that is no drive does not count.

@@ -29,7 +29,9 @@ MAX_TOLD = 100
 
 @click.command("host")
 @click.argument("level")
-@click.option("--tag", is_flag=True, help="Play tag instead of a race; the player caught for less time wins.")
+@click.option(
+    "--tag", is_flag=True, help="Play tag instead of a race: catch the other robot, and do not get caught."
+)
 @click.option("--group", help="Let users of this group join too (default: only your own terminals).")
 @click.option("--everybody", is_flag=True, help="Let all users of this machine join.")
 @click.option("--name", help="Your name in the game (default: your login name).")

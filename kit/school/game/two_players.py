@@ -38,6 +38,13 @@ TAG_PAUSE: Final = 2.0
 """After a catch nobody is caught for this time [s]."""
 TAG_SECONDS: Final = 90.0
 """A game of tag lasts this long [s]."""
+STILL_SECONDS: Final = 3.0
+STILL_DISTANCE: Final = 0.3
+"""A robot stands still once it has stayed for longer than this [s] within this distance of one place [m]."""
+TAG_RULE: Final = (
+    "Each second counts against the catcher, or against the one that is chased where that alone has stayed on one spot for "
+    f"{STILL_SECONDS:.0f} s. Who has less after {TAG_SECONDS:.0f} s has won."
+)
 
 
 class SharedMode(StrEnum):
@@ -71,7 +78,7 @@ class SharedGameState:
     poses: tuple[Pose, ...]
     """Poses of the host's and the guest's robot."""
     scores: tuple[float, ...]
-    """In a race the number of targets reached, in tag the seconds as the catcher."""
+    """In a race the number of targets reached, in tag the seconds that count against each."""
     catcher: int | None = None
     """The catcher in tag."""
     winner: int | None = None
@@ -120,7 +127,12 @@ def shared_scenario(level: GameLevel) -> Scenario:
 
 
 class SharedReferee(Observer):
-    """Judges a game of two robots in one world. Belongs to the thread that ticks."""
+    """Judges a game of two robots in one world. Belongs to the thread that ticks.
+
+    Tag is scored as a game of pursuit and evasion is, by the time to capture (R. Isaacs: Differential Games, 1965): each second
+    counts against the catcher. While the one that is chased stands still and the catcher does not, it counts against that one
+    instead: each second counts against one of the two, and neither gains by standing still.
+    """
 
     def __init__(self, scenario: Scenario, mode: SharedMode, simulation: Simulation) -> None:
         """``scenario``: of ``shared_scenario``."""
@@ -136,6 +148,9 @@ class SharedReferee(Observer):
         self._since_ns = self._now_ns = 0
         self._catcher: int | None = 0 if mode is SharedMode.TAG else None
         self._caught_ns = 0
+        self._places: list[tuple[float, float]] = []
+        """Where each robot was when it had last moved on; empty where that is not known yet."""
+        self._moved_ns = [0] * PLAYERS
         self._winner: int | None = None
 
     @property
@@ -161,6 +176,7 @@ class SharedReferee(Observer):
     def on_step(self, simulation: Simulation) -> None:
         if simulation.time_ns < self._now_ns:  # the world was reset: the phase begins again
             self._since_ns = self._caught_ns = 0
+            self._places = []
         self._now_ns = simulation.time_ns
         seconds = (self._now_ns - self._since_ns) / 1e9
         if self._phase is SharedPhase.COUNTDOWN and seconds >= COUNTDOWN:
@@ -172,7 +188,7 @@ class SharedReferee(Observer):
                 self._judge_tag(simulation, seconds)
 
     def _enter(self, phase: SharedPhase) -> None:
-        self._phase, self._since_ns = phase, self._now_ns
+        self._phase, self._since_ns, self._places = phase, self._now_ns, []
 
     def _judge_race(self, simulation: Simulation) -> None:
         for number, robot in enumerate(self.robots):
@@ -188,14 +204,25 @@ class SharedReferee(Observer):
         assert self._catcher is not None
         step = simulation.step_size
         poses = [simulation.pose(robot) for robot in self.robots]
-        self._scores[self._catcher] += step
+        chased = 1 - self._catcher
+        is_chased_alone_still = self._stands_still(poses) == [number == chased for number in range(PLAYERS)]
+        self._scores[chased if is_chased_alone_still else self._catcher] += step
         is_near = math.dist(poses[0][:2], poses[1][:2]) <= TAG_DISTANCE
         if is_near and self._now_ns - max(self._caught_ns, self._since_ns) >= TAG_PAUSE * 1e9:
-            self._catcher, self._caught_ns = 1 - self._catcher, self._now_ns
+            self._catcher, self._caught_ns, self._places = chased, self._now_ns, []
         if seconds >= TAG_SECONDS:
             first, second = self._scores
             self._winner = None if math.isclose(first, second, abs_tol=step) else int(second < first)
             self._enter(SharedPhase.OVER)
+
+    def _stands_still(self, poses: Sequence[Pose]) -> list[bool]:
+        """Whether each robot has stayed on one spot for too long."""
+        if not self._places:
+            self._places, self._moved_ns = [(each.x, each.y) for each in poses], [self._now_ns] * PLAYERS
+        for number, pose in enumerate(poses):
+            if math.dist(self._places[number], pose[:2]) >= STILL_DISTANCE:
+                self._places[number], self._moved_ns[number] = (pose.x, pose.y), self._now_ns
+        return [self._now_ns - moved > STILL_SECONDS * 1e9 for moved in self._moved_ns]
 
 
 @dataclass(slots=True)

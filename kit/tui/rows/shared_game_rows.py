@@ -7,7 +7,15 @@ from typing import Final
 
 from kit.document.rows import Row, at_both_edges, row, row_width
 from kit.plain_text import counted, wrap
-from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
+from kit.school.game.two_players import (
+    COUNTDOWN,
+    STILL_SECONDS,
+    TAG_RULE,
+    TAG_SECONDS,
+    SharedGameState,
+    SharedMode,
+    SharedPhase,
+)
 from kit.tui.rows.ruled_title import ruled_title
 
 HOST: Final = 0
@@ -18,7 +26,7 @@ LEAST_WIDTH: Final = 16
 """Columns of the players' card."""
 RULES: Final = {
     SharedMode.RACE: "First at the target wins.",
-    SharedMode.TAG: f"A touch makes the other one the catcher. Whoever was it for less of {TAG_SECONDS:.0f} s has won.",
+    SharedMode.TAG: f"A touch makes the other one the catcher. {TAG_RULE}",
 }
 
 
@@ -119,12 +127,16 @@ def _task_text(mode: SharedMode, state: SharedGameState, me: int | None) -> str:
     assert state.catcher is not None
     if me is None:
         return f"{state.names[state.catcher]} catches."
-    return "You catch: touch the other robot." if state.catcher == me else "Do not get caught."
+    return (
+        "You catch: touch the other robot."
+        if state.catcher == me
+        else f"Do not get caught, nor stay on one spot for {STILL_SECONDS:.0f} s."
+    )
 
 
 def _score_text(mode: SharedMode, state: SharedGameState, number: int) -> str:
     score = state.scores[number]
-    return counted(round(score), "target") if mode is SharedMode.RACE else f"catcher for {score:.1f} s"
+    return counted(round(score), "target") if mode is SharedMode.RACE else f"{score:.1f} s against"
 
 
 def _end_text(state: SharedGameState, me: int | None) -> str:

@@ -30,6 +30,7 @@ from kit.school.game.league.league_blocks import KEYS, matches_table, standings_
 from kit.school.game.league.standings import Match, Standings, match_recordings, read_standings
 from kit.school.game.league.tag_game import tag_scenario
 from kit.school.game.starts import film_scenario
+from kit.school.game.two_players import STILL_SECONDS
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
@@ -311,7 +312,8 @@ NOTES: Final = (
     ("rating", "400 points more: wins ten times as often (Bradley-Terry)"),
     ("95 %", "where the rating lies, as far as these matches tell"),
     ("race", "each drives alone from five starts; the middle drives compare"),
-    ("tag", "two robots in one world; the shorter time as catcher wins"),
+    ("tag", "two robots in one world; a second counts against the catcher"),
+    ("", f"or the other one where that alone stands still for {STILL_SECONDS:.0f} s"),
 )
 
 

@@ -58,6 +58,8 @@ from kit.school.game.shared_sockets import (
 from kit.school.game.two_players import (
     COUNTDOWN,
     GUEST,
+    STILL_DISTANCE,
+    STILL_SECONDS,
     TAG_PAUSE,
     CannotShare,
     SharedGame,
@@ -226,6 +228,37 @@ def test_in_tag_who_is_caught_catches_and_less_time_wins(
         int(game.state.scores[1] < game.state.scores[0]),
     )
     assert sum(game.state.scores) == pytest.approx(6.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("moving", "scores"),
+    [
+        ((), (8.0, 0.0)),
+        ((0,), (STILL_SECONDS, 8.0 - STILL_SECONDS)),
+        ((1,), (8.0, 0.0)),
+        ((0, 1), (8.0, 0.0)),
+    ],
+    ids=["nobody moves", "the catcher moves", "the other one moves", "both move"],
+)
+def test_in_tag_a_second_counts_against_the_one_that_is_chased_where_that_alone_stands_still(
+    tag: tuple[Session, SharedGame],
+    monkeypatch: pytest.MonkeyPatch,
+    moving: tuple[int, ...],
+    scores: tuple[float, float],
+) -> None:
+    session, game = tag
+    monkeypatch.setattr(two_players, "TAG_SECONDS", 8.0)
+    starts = game.state.poses
+    game.start()
+    until(session, COUNTDOWN + 0.1)
+    for second in range(9):
+        for number in moving:
+            start = starts[number]
+            place = Pose(start.x, start.y + STILL_DISTANCE * (1 + second % 2), start.theta)
+            session.runner.call_service("move_model", game.robots[number], place)
+        until(session, 1.0)
+    assert game.state.catcher == 0, "nobody was caught"
+    assert game.state.scores == pytest.approx(scores, abs=0.1)
 
 
 def test_a_rematch_begins_anew_with_the_other_catching_first_or_waits(

@@ -47,7 +47,7 @@ from kit.school.game.shared_drives import (
     share_drives,
 )
 from kit.school.game.starts import draw_seeds, scenario_from
-from kit.school.game.two_players import TAG_SECONDS, CannotShare, SharedPhase
+from kit.school.game.two_players import TAG_RULE, TAG_SECONDS, CannotShare, SharedPhase
 from kit.sim.simulation import Simulation
 from kit.workspace import Workspace, make_private_folder, open_common_folder, write_atomically
 
@@ -91,7 +91,7 @@ class JudgedJob:
     finishes: tuple[RaceFinish, ...] = ()
     """Of the drives, one from each start."""
     scores: tuple[float, ...] = ()
-    """Of a game: for how long each was the catcher [s]."""
+    """Of a game: the seconds that count against each."""
     winner: int | None = None
     """Of a game; None if it was a draw."""
     remarks: tuple[str, ...] = ()
@@ -396,7 +396,7 @@ def read_programme(content: bytes, folder: Path) -> Programme:
 def _judge_once(folder: Path, content: bytes, level: GameLevel, players: int) -> JudgedJob | None:
     """Judges the content of a result once, and keeps that in ``folder``: thousands of drives would take minutes each time."""
     told = json.dumps(
-        [__version__, platform_key(), repr(level), players, hashlib.sha256(content).hexdigest()]
+        [__version__, platform_key(), repr(level), players, TAG_RULE, hashlib.sha256(content).hexdigest()]
     )
     file = folder / f"{hashlib.sha256(told.encode()).hexdigest()[:32]}.json"
     with suppress(OSError, ValueError, KeyError, TypeError):

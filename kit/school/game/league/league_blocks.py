@@ -9,6 +9,7 @@ from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Ton
 from kit.plain_text import join_names
 from kit.school.game.league.league import Programme
 from kit.school.game.league.standings import DRAW, Match, Place, Standings
+from kit.school.game.two_players import TAG_RULE
 
 TEXT = CellStyle.TEXT
 
@@ -69,7 +70,7 @@ def rules_blocks(programme: Programme, words: LeagueWords) -> list[Block]:
         join_names([level.title for level in levels]) for levels in (programme.races, programme.tag)
     )
     alone = "each entrant drives alone, from five starts; the middle drives are compared."
-    together = "two robots in one world; whoever was the catcher for less time wins."
+    together = f"two robots in one world. {TAG_RULE}"
     rules = [
         ("Races", f"{races}: {alone}") if races else None,
         ("Tag", f"{tag}: {together}") if tag else None,

@@ -176,7 +176,7 @@ def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, Judge
 
 
 def tag_match(job: LeagueJob, game: JudgedJob) -> Match:
-    """The shorter time as the catcher wins. Whose program has failed has lost, whatever the time says."""
+    """Who has less time against it wins. Whose program has failed has lost, whatever the time says."""
     first_failed, second_failed = (bool(each) for each in (*game.remarks, "", "")[:2])
     if first_failed != second_failed:
         points = float(second_failed)
@@ -186,8 +186,7 @@ def tag_match(job: LeagueJob, game: JudgedJob) -> Match:
         points = float(game.winner == 0)
     remarks = (*game.remarks, "", "")
     details = [
-        remark or f"catcher for {seconds:.1f} s"
-        for remark, seconds in zip(remarks, game.scores, strict=False)
+        remark or f"{seconds:.1f} s against it" for remark, seconds in zip(remarks, game.scores, strict=False)
     ]
     entrants = job.entrants[0], job.entrants[1]
     return Match(job.level, True, entrants, points, (details[0], details[1]), (job,), game.is_same_platform)
