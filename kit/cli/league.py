@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -75,6 +76,9 @@ def command(context: click.Context, workspace: Path | None, folder: Path | None,
     other robot is; it has a namespace of its own and can use no name outside. Each second counts against the catcher, or
     against the other one while that alone stands still; each pair plays twice. Programs are confined as when they are graded.
 
+    Whoever enters first meets the programs of the house, three that come with the kit: they take no place and win no title,
+    and ``kit league run --no-house`` leaves them out.
+
     Ratings follow Bradley and Terry: 400 points more mean ten times as many wins. Only the commands of a drive are stored:
     everybody's kit runs them again and judges them, so a result that is no drive does not count.
     """
@@ -104,14 +108,17 @@ def command(context: click.Context, workspace: Path | None, folder: Path | None,
 @click.option(
     "--tag", "tag", multiple=True, metavar="LEVEL", help="A level on which tag is played; repeat for more."
 )
-def new(folder: Path, title: str, races: tuple[str, ...], tag: tuple[str, ...]) -> None:
+@click.option("--no-house", is_flag=True, help="Leave the programs of the house out.")
+def new(folder: Path, title: str, races: tuple[str, ...], tag: tuple[str, ...], no_house: bool) -> None:
     """Make a league in FOLDER that all users of this machine can enter; you run its matches."""
     from kit.school.game.league.entries import LeagueError
     from kit.school.game.league.league import RACES, TAG, League
 
     try:
         given = bool(races or tag)
-        league = League.make(folder, title, races if given else RACES, tag if given else TAG)
+        league = League.make(
+            folder, title, races if given else RACES, tag if given else TAG, has_house=not no_house
+        )
     except LeagueError as error:
         messages.fail(str(error))
     messages.say(f"To enter it: kit league --folder {league.folder} submit --controller FILE")
@@ -161,16 +168,24 @@ def withdraw(context: click.Context, name: str) -> None:
     type=click.Choice(["0", "1", "2", "3"]),
     help="How far programs are confined from now on (`kit doctor` lists what this machine has).",
 )
+@click.option(
+    "--house/--no-house",
+    default=None,
+    help="Whether the programs of the house take part from now on.",
+)
 @executor_options("Processes", "Where matches are driven.", may_have_none=False)
 @click.pass_context
-def run(context: click.Context, level: str | None, executor: JobExecutor) -> None:
+def run(context: click.Context, level: str | None, house: bool | None, executor: JobExecutor) -> None:
     """Drive the matches that are missing. What is interrupted goes on where it was.
 
     Exit code: 0 all matches are driven; 1 some are not; 2 the league cannot be run.
     """
     with _open_league(context) as (league, _):
-        if level is not None and league.is_mine:
-            league.confine(Level(int(level)))
+        if league.is_mine:
+            programme = league.programme()
+            confinement = programme.confinement if level is None else Level(int(level))
+            has_house = programme.has_house if house is None else house
+            league.change(replace(programme, confinement=confinement, has_house=has_house))
         try:
             keys = league.prepare_run()
         except OSError as error:

@@ -13,7 +13,7 @@ def result_of(folder: Path, *words: str):
 
 
 def test_programs_enter_are_listed_and_withdraw(tmp_path: Path) -> None:
-    assert "needs two" in result_of(tmp_path, "--plain").output
+    assert "Nobody is entered" in result_of(tmp_path, "--plain").output
     for name, program in {"laser": LASER, "stops": CRASHES}.items():
         (tmp_path / f"{name}.py").write_bytes(program)
         assert result_of(tmp_path, "submit", "--controller", str(tmp_path / f"{name}.py")).exit_code == 0

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.controllers import kit_controllers
+from kit.school.game.league.house import house_programs
 from kit.school.game.levels import (
     CHALLENGES_WORLD,
     GameLevel,
@@ -97,7 +98,8 @@ def facts_of_program(file: Path) -> DriverFacts:
         text = bare_code(file.read_bytes())
     except (OSError, *CODE_ERRORS):
         return DriverFacts()  # it cannot drive either, and says so itself
-    shipped = {bare_code(each.file.read_bytes()) for each in kit_controllers()}
+    programs = [*(each.file.read_bytes() for each in kit_controllers()), *house_programs().values()]
+    shipped = set(map(bare_code, programs))
     return DriverFacts(is_shipped=text in shipped, code_lines=len(text.splitlines()) - text.count("\n\n"))
 
 

@@ -26,6 +26,7 @@ from kit.controllers import find_controller
 from kit.run.recording import Recording
 from kit.run.session import Session
 from kit.school.game.drive_commands import DriveCommand
+from kit.school.game.league import house
 from kit.school.game.levels import TURN_RATE, GameLevel, all_levels
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.race import (
@@ -43,7 +44,7 @@ from tests.school.game.level_agents import train_agent
 from tests.school.game.map_plans import write_program
 from tests.school.game.ordinary import OrdinaryDriver
 
-LASER_PROGRAM: Final = Path(__file__).with_name("laser_program.py")
+LASER_PROGRAM: Final = house.PROGRAM
 MEASURED: Final = Path(__file__).with_name("measured_drivers.csv")
 DRIVERS: Final = {
     "keys": DriverKind.KEYS,

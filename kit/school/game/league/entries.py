@@ -21,6 +21,8 @@ from kit.controllers import ControllerFile, controller_title, kit_controllers
 from kit.learning.policies.policy_node_text import TITLE, learned_constants
 from kit.plain_files import open_plain_file
 from kit.plain_text import quoted, suggestion
+from kit.school.game.league.house import PROGRAM as HOUSE_PROGRAM
+from kit.school.game.league.house import house_programs
 from kit.school.game.player_progress import CODE_ERRORS, bare_code
 from kit.school.game.race import DriverKind
 from kit.school.game.shared_sockets import user_name
@@ -61,6 +63,13 @@ class Entry:
     """The number of the user whose file it is; -1 for one that cannot be read."""
     problem: str = ""
     """Why it takes part in no match; empty if it does."""
+    house_program: bytes = b""
+    """Its content, where it is one of the house, which has no file of its own; empty for everybody else."""
+
+    @property
+    def is_house(self) -> bool:
+        """Whether it comes with the kit, and so takes no place."""
+        return bool(self.house_program)
 
     @property
     def program(self) -> ControllerFile:
@@ -110,6 +119,20 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
                 problem = f"its user has {MAX_OF_ONE_USER} other entries"
         found.append(Entry(name, driver, file, digest, code, user == os.getuid(), user, problem))
     return tuple(sorted(found, key=lambda each: each.name))
+
+
+@cache
+def house_entries() -> tuple[Entry, ...]:
+    """The entries of the house, by speed. Nobody else's name can have a blank or brackets."""
+    return tuple(
+        Entry(f"{name} (house)", *_identity(program), is_mine=False, house_program=program)
+        for name, program in house_programs().items()
+    )
+
+
+def _identity(program: bytes) -> tuple[DriverKind, Path, str, str]:
+    driver, code = _driver_and_code(program)
+    return driver, HOUSE_PROGRAM, _digest(program), code
 
 
 def record_holders(folder: Path) -> None:
@@ -237,8 +260,9 @@ def _driver_and_code(content: bytes) -> tuple[DriverKind, str]:
 
 @cache
 def _shipped_code() -> frozenset[str]:
-    """Of the controllers that come with the kit."""
-    return frozenset(_driver_and_code(each.file.read_bytes())[1] for each in kit_controllers())
+    """Of the programs that come with the kit."""
+    programs = [*(each.file.read_bytes() for each in kit_controllers()), *house_programs().values()]
+    return frozenset(_driver_and_code(each)[1] for each in programs)
 
 
 def _digest(content: bytes) -> str:

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
-from itertools import permutations
+from itertools import combinations
 from pathlib import Path
 from random import Random
 from typing import Any, ClassVar, Final
@@ -33,7 +33,14 @@ from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.plain_files import open_plain_file, read_plain_file
 from kit.run.recording import Recorder, Recording, RecordingError
 from kit.school.game.league.entries import FOLDER as ENTRIES
-from kit.school.game.league.entries import MANIFEST, Entry, LeagueError, read_entries, record_holders
+from kit.school.game.league.entries import (
+    MANIFEST,
+    Entry,
+    LeagueError,
+    house_entries,
+    read_entries,
+    record_holders,
+)
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
 from kit.school.game.levels import GameLevel, UnknownLevel, find_level
 from kit.school.game.race import DriverKind, RaceFinish, race_controller
@@ -72,6 +79,8 @@ class Programme:
     races: tuple[GameLevel, ...]
     tag: tuple[GameLevel, ...]
     confinement: Confinement
+    has_house: bool = True
+    """Whether the programs of the house take part."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,30 +118,25 @@ class League(JobFolder):
     job_name: ClassVar[str] = "kit-league"
 
     @classmethod
-    def make(cls, folder: Path, title: str, races: Sequence[str], tag: Sequence[str]) -> League:
+    def make(
+        cls, folder: Path, title: str, races: Sequence[str], tag: Sequence[str], *, has_house: bool = True
+    ) -> League:
         """Makes a league's folder, to whose entries every user of the machine can add. Raises LeagueError."""
         league = cls(folder)
         if (folder / MANIFEST).exists():
             raise LeagueError(f"{folder} has a league already.")
-        content = {
-            "title": title,
-            "races": list(races),
-            "tag": list(tag),
-            "confinement": int(Confinement.FILTERED),
-        }
-        read_programme(json.dumps(content).encode(), folder)
+        told = {"title": title, "races": list(races), "tag": list(tag)}
+        content = json.dumps({**told, "confinement": int(Confinement.FILTERED), "house": has_house})
+        programme = read_programme(content.encode(), folder)
         try:
             folder.mkdir(parents=True, exist_ok=True)
             if problem := open_common_folder(folder / ENTRIES):
                 raise LeagueError(f"{folder / ENTRIES}: {problem}.")
             (folder / RESULTS).mkdir(mode=0o755, exist_ok=True)
-            league._write(content)
         except OSError as error:
             raise LeagueError(f"{folder}: the league cannot be made ({error.strerror}).") from None
+        league.change(programme)
         return league
-
-    def _write(self, content: dict[str, Any]) -> None:
-        write_atomically(self.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())
 
     @property
     def is_mine(self) -> bool:
@@ -167,38 +171,40 @@ class League(JobFolder):
             raise LeagueError(f"{self.folder}: there is no league; `kit league new` makes one.") from None
         return read_programme(content, self.folder)
 
-    def confine(self, level: Confinement) -> None:
-        """Sets the level of confinement at which programs are run. Raises LeagueError."""
-        programme = self.programme()
-        if programme.confinement is level:
-            return
+    def change(self, programme: Programme) -> None:
+        """Sets what the entrants do, and how they are confined. Raises LeagueError."""
+        content = {
+            "title": programme.title,
+            "races": [each.id for each in programme.races],
+            "tag": [each.id for each in programme.tag],
+            "confinement": int(programme.confinement),
+            "house": programme.has_house,
+        }
         try:
-            self._write(
-                {
-                    "title": programme.title,
-                    "races": [each.id for each in programme.races],
-                    "tag": [each.id for each in programme.tag],
-                    "confinement": int(level),
-                }
-            )
+            write_atomically(self.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())
         except OSError as error:
             raise LeagueError(f"{self.folder}: {error.strerror}.") from None
 
     def entries(self) -> tuple[Entry, ...]:
-        """Raises LeagueError."""
-        return read_entries(self.folder)
+        """All entries, and those of the house where they take part. Raises LeagueError."""
+        return (*read_entries(self.folder), *(house_entries() if self.programme().has_house else ()))
 
     def entrants(self) -> list[Entry]:
         """The entries that take part. Raises LeagueError."""
         return [each for each in self.entries() if not each.problem]
 
     def jobs(self) -> list[LeagueJob]:
-        """All that has to be driven: none while fewer than two are entered. Raises LeagueError."""
+        """All that has to be driven: none while nobody meets anybody. Raises LeagueError."""
         entrants, programme = self.entrants(), self.programme()
-        if len(entrants) < 2:
-            return []
-        drives = [drive_job(level, each) for level in programme.races for each in entrants]
-        games = [tag_job(level, *pair) for level in programme.tag for pair in permutations(entrants, 2)]
+        pairs = pairs_of(entrants)
+        racing = [each for each in entrants if any(each in pair for pair in pairs)]
+        drives = [drive_job(level, each) for level in programme.races for each in racing]
+        games = [
+            tag_job(level, *players)
+            for level in programme.tag
+            for pair in pairs
+            for players in (pair, pair[::-1])
+        ]
         return [*drives, *games]
 
     # What a job folder says
@@ -309,6 +315,11 @@ def own_league(workspace: Workspace, folder: Path | None = None) -> League:
     return League(own, judgements)
 
 
+def pairs_of(entrants: Sequence[Entry]) -> list[tuple[Entry, Entry]]:
+    """Who meets whom: all each other, but for two of the house."""
+    return [pair for pair in combinations(entrants, 2) if not all(each.is_house for each in pair)]
+
+
 def drive_job(level: GameLevel, entry: Entry) -> LeagueJob:
     """A drive of an entrant from all starts of a level."""
     return LeagueJob(_key("drive", level.id, entry.digest), level, (entry,))
@@ -359,6 +370,9 @@ def _copy_program(entry: Entry, folder: Path, number: int) -> ControllerFile:
     part = folder / str(number)
     part.mkdir()
     file = part / f"{entry.name}.py"
+    if entry.is_house:
+        file.write_bytes(entry.house_program)
+        return replace(entry.program, file=file)
     try:
         with open_plain_file(entry.file, follows_links=False) as opened:
             content = opened.read()
@@ -376,10 +390,11 @@ def read_programme(content: bytes, folder: Path) -> Programme:
     try:
         told = json.loads(content)
         title, confinement = str(told["title"])[:80], Confinement(told["confinement"])
+        has_house = bool(told["house"])
         names = {kind: [str(each) for each in told[kind]] for kind in ("races", "tag")}
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise LeagueError(
-            f"{file}: a league has a title, races, tag (lists of levels) and confinement ({error})."
+            f"{file}: a league has a title, races, tag (lists of levels), confinement and house ({error})."
         ) from None
     if not names["races"] and not names["tag"]:
         raise LeagueError(f"{file}: a league needs at least one level, in races or tag.")
@@ -389,7 +404,7 @@ def read_programme(content: bytes, folder: Path) -> Programme:
             tag_scenario(level)
     except (UnknownLevel, CannotShare) as error:
         raise LeagueError(f"{file}: {error}") from None
-    return Programme(title, races, tag, confinement)
+    return Programme(title, races, tag, confinement, has_house)
 
 
 @lru_cache(MAX_JUDGED)

@@ -7,11 +7,13 @@ from typing import Final, NamedTuple
 
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
 from kit.plain_text import join_names
+from kit.school.game.league.house import SPEEDS
 from kit.school.game.league.league import Programme
 from kit.school.game.league.standings import DRAW, Match, Place, Standings
 from kit.school.game.two_players import TAG_RULE
 
 TEXT = CellStyle.TEXT
+HOUSE: Final = f"{join_names(tuple(SPEEDS))}, the programs of the house, which everybody meets; then those that others enter."
 
 
 class LeagueWords(NamedTuple):
@@ -40,17 +42,22 @@ KEYS: Final = LeagueWords(
 def summary_blocks(standings: Standings, words: LeagueWords = COMMANDS) -> list[Block]:
     """Who is the champion, what is still to be run, and who takes no part."""
     blocks: list[Block] = []
-    champion = standings.champion
+    champion, own = standings.champion, standings.own_places
     if len(standings.places) < 2:
-        alone = "Nobody is" if not standings.places else f"{standings.places[0].entry.name} alone is"
-        blocks.append(Text(f"{alone} entered: a league needs two."))
+        alone = "Nobody is" if not own else f"{own[0].entry.name} alone is"
+        has_house = standings.programme.has_house
+        blocks.append(Text(f"{alone} entered{'.' if has_house else ': a league needs two.'}"))
         blocks += rules_blocks(standings.programme, words)
     elif standings.unread:
         read = standings.jobs - standings.unread
         text = "This machine judges every drive itself; next time only those that are new."
         blocks.append(Text(text, lead=f"Running the drives again: {read} of {standings.jobs}."))
+    elif not standings.matches:
+        blocks.append(Text(f"No match has been driven yet. {words.run} drives the matches that are missing."))
+    elif len(own) == 1:
+        blocks.append(_among_the_house(standings.places, own[0]))
     elif champion is None:
-        blocks.append(Text(f"No match has been won yet. {words.run} drives the matches that are missing."))
+        blocks.append(Text("No match has been won yet."))
     elif standings.is_certain:
         blocks.append(Text(f"{champion.entry.name} is the champion.", Tone.GOOD))
     else:
@@ -64,6 +71,15 @@ def summary_blocks(standings: Standings, words: LeagueWords = COMMANDS) -> list[
     return blocks
 
 
+def _among_the_house(places: Sequence[Place], own: Place) -> Text:
+    """How the only one that is entered stands among the programs of the house."""
+    above = [each for each in places if each.entry.is_house and each.rating.points > own.rating.points]
+    if not above:
+        return Text(f"{own.entry.name} has left the programs of the house behind.", Tone.GOOD)
+    gap = above[-1].rating.points - own.rating.points
+    return Text(f"{own.entry.name} has {above[-1].entry.name} to beat next, {gap:.0f} points above.")
+
+
 def rules_blocks(programme: Programme, words: LeagueWords) -> list[Block]:
     """What the entrants of a league do, and how one enters."""
     races, tag = (
@@ -75,7 +91,7 @@ def rules_blocks(programme: Programme, words: LeagueWords) -> list[Block]:
         ("Races", f"{races}: {alone}") if races else None,
         ("Tag", f"{tag}: {together}") if tag else None,
         ("Enter", words.enter),
-        ("An opponent", words.opponent),
+        ("Opponents", HOUSE if programme.has_house else words.opponent),
         ("Then", f"{words.run} drives the matches; ratings follow from who beat whom. {words.watch}."),
     ]
     return [labelled_table(rule for rule in rules if rule is not None)]
@@ -96,19 +112,19 @@ def standings_table(standings: Standings) -> Table:
         Column("lost"),
     )
     rows = tuple(
-        (*((f"{each.division}",) if has_divisions else ()), *_place_cells(place, each))
-        for place, each in enumerate(standings.places, 1)
+        (*((f"{each.division}",) if has_divisions else ()), *_place_cells(each)) for each in standings.places
     )
     return Table("standings", "", columns, rows, grouped=has_divisions)
 
 
-def _place_cells(place: int, each: Place) -> tuple[Cell, ...]:
+def _place_cells(each: Place) -> tuple[Cell, ...]:
+    number = "" if each.entry.is_house else f"{each.number}."
     name = ToneText(each.entry.name, Tone.BOLD if each.entry.is_mine else Tone.PLAIN)
     rating = each.rating
     has_played = each.won + each.drawn + each.lost > 0
     points, interval = (rating.points, (rating.low, rating.high)) if has_played else (None, None)
     driver = each.entry.driver.phrase.removeprefix("by ")
-    return f"{place}.", name, driver, points, interval, each.won, each.drawn, each.lost
+    return number, name, driver, points, interval, each.won, each.drawn, each.lost
 
 
 def match_sentence(match: Match) -> str:

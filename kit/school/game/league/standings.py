@@ -6,14 +6,21 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Final
 
 import numpy as np
 
 from kit.run.recording import Recording
 from kit.school.game.league.entries import Entry
-from kit.school.game.league.league import JudgedJob, League, LeagueJob, Programme, drive_job, tag_job
+from kit.school.game.league.league import (
+    JudgedJob,
+    League,
+    LeagueJob,
+    Programme,
+    drive_job,
+    pairs_of,
+    tag_job,
+)
 from kit.school.game.league.ratings import Rating, rate
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import finish_order, middle_drive
@@ -58,6 +65,8 @@ class Place:
     won: int
     drawn: int
     lost: int
+    number: int
+    """Its place, from 1; of the house, which takes none, the number of those above."""
     division: int
     """From 1."""
 
@@ -82,15 +91,21 @@ class Standings:
     """What all of them do."""
 
     @property
+    def own_places(self) -> list[Place]:
+        """Those of the entrants that are not of the house."""
+        return [each for each in self.places if not each.entry.is_house]
+
+    @property
     def champion(self) -> Place | None:
-        """The best of the first division; None while nobody has won a match, or fewer than two are entered."""
-        best = self.places[0] if len(self.places) > 1 else None
-        return best if best is not None and best.won else None
+        """The best that is not of the house; None while it has won no match, or fewer than two are entered."""
+        own = self.own_places
+        return own[0] if len(own) > 1 and own[0].won else None
 
     @property
     def is_certain(self) -> bool:
         """Whether the champion's interval lies above that of the next."""
-        return len(self.places) > 1 and self.places[0].rating.low > self.places[1].rating.high
+        own = self.own_places
+        return len(own) > 1 and own[0].rating.low > own[1].rating.high
 
     def matches_of(self, name: str) -> list[Match]:
         return [each for each in self.matches if name in (entry.name for entry in each.entrants)]
@@ -121,8 +136,10 @@ def _standings_of(
 ) -> Standings:
     """The standings by the jobs that have been judged; None: they have not been run."""
     entrants = [each for each in entries if not each.problem]
-    matches = []
-    for first, second in combinations(entrants, 2):
+    pairs, matches = pairs_of(entrants), []
+    if not pairs:  # the house waits for somebody
+        entrants = [each for each in entrants if not each.is_house]
+    for first, second in pairs:
         for level in programme.races:
             drives = drive_job(level, first), drive_job(level, second)
             one, other = (judged.get(drive.key) for drive in drives)
@@ -207,7 +224,9 @@ def _rank_entrants(entrants: Sequence[Entry], matches: Sequence[Match]) -> tuple
         zip(entrants, rate(points), counts.tolist(), strict=True),
         key=lambda each: (-round(each[1].points, 6), each[0].name),
     )
-    return tuple(
-        Place(entry, rating, won, drawn, lost, 1 + number // DIVISION_SIZE)
-        for number, (entry, rating, (won, drawn, lost)) in enumerate(rated)
-    )
+    places, above = [], 0
+    for entry, rating, (won, drawn, lost) in rated:
+        division = 1 + above // DIVISION_SIZE
+        above += not entry.is_house
+        places.append(Place(entry, rating, won, drawn, lost, above, division))
+    return tuple(places)

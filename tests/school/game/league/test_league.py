@@ -9,6 +9,7 @@ import shutil
 import time
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,8 @@ from kit.school.game.league.entries import (
     submit,
     withdraw,
 )
+from kit.school.game.league.house import PROGRAM as HOUSE_PROGRAM
+from kit.school.game.league.house import house_programs
 from kit.school.game.league.league import (
     JudgedJob,
     League,
@@ -64,7 +67,7 @@ from kit.workspace import open_workspace
 LEVEL = find_level("first-drive")
 ARENA = find_level("two-doors")
 CONTROLLER = DriverKind.CONTROLLER
-LASER = (Path(__file__).parents[1] / "laser_program.py").read_bytes()
+LASER = HOUSE_PROGRAM.read_bytes() + b"\nown = True\n"
 
 FRAME = """
 import rclpy
@@ -127,9 +130,11 @@ GIVES_UP = FRAME.format(
 """Does not arrive, and needs less time for it than one that stands to the end."""
 
 
-def make_league(folder: Path, *, races: bool = True, tag: bool = False, **programs: bytes) -> League:
+def make_league(
+    folder: Path, *, races: bool = True, tag: bool = False, house: bool = False, **programs: bytes
+) -> League:
     league = League.make(folder / "league", "Ours", [LEVEL.id] if races else [], [ARENA.id] if tag else [])
-    league.confine(Level.LIMITED)
+    league.change(replace(league.programme(), confinement=Level.LIMITED, has_house=house))
     for name, program in programs.items():
         submit(league.folder, name, program)
     return league
@@ -313,10 +318,11 @@ def test_divisions_hold_six_each(tmp_path: Path) -> None:
         b"{",
         b"[]",
         b"{}",
-        b'{"title": "x", "races": [], "tag": [], "confinement": 1}',
-        b'{"title": "x", "races": ["nowhere"], "tag": [], "confinement": 1}',
-        b'{"title": "x", "races": [], "tag": ["crossing"], "confinement": 1}',
-        b'{"title": "x", "races": ["parking"], "tag": [], "confinement": 9}',
+        b'{"title": "x", "races": [], "tag": [], "confinement": 1, "house": true}',
+        b'{"title": "x", "races": ["nowhere"], "tag": [], "confinement": 1, "house": true}',
+        b'{"title": "x", "races": [], "tag": ["crossing"], "confinement": 1, "house": true}',
+        b'{"title": "x", "races": ["parking"], "tag": [], "confinement": 9, "house": true}',
+        b'{"title": "x", "races": ["parking"], "tag": [], "confinement": 1}',
     ],
 )
 def test_a_damaged_league_says_what_is_wrong(tmp_path: Path, content: bytes) -> None:
@@ -337,6 +343,31 @@ def test_no_league_or_a_second_one_is_refused(tmp_path: Path) -> None:
     assert own_league(open_workspace(tmp_path / "home")) == own
 
 
+# The house
+
+
+@pytest.mark.long
+def test_the_first_entrant_meets_the_house_which_takes_no_place(tmp_path: Path) -> None:
+    league = make_league(tmp_path, house=True)
+    assert (league.waiting(), read_standings(league).places) == ((), ()), "the house waits"
+    submit(league.folder, "laser", LASER)
+    standings = run(league)
+    assert len(standings.matches) == len(house_programs())
+    assert all("laser" in (entry.name for entry in each.entrants) for each in standings.matches)
+    (own,) = standings.own_places
+    assert (own.entry.name, own.number, standings.champion) == ("laser", 1, None)
+    assert {str(row[0]) for row in standings_table(standings).rows} == {"1.", ""}
+    order = [each.entry.name.removesuffix(" (house)") for each in standings.places if each.entry.is_house]
+    assert order[0] == "quick"
+    assert set(order) == set(house_programs())
+    submit(league.folder, "stands", GIVES_UP)
+    champion = run(league).champion
+    assert champion is not None
+    assert champion.entry.name == "laser", "whatever the house drives"
+    league.change(replace(league.programme(), has_house=False))
+    assert len(read_standings(league).matches) == 1
+
+
 # Cheats: entries
 
 EntryCheat = Callable[[League], None]
@@ -352,6 +383,10 @@ def copy_of_the_kits_own(league: League) -> None:
 def copy_of_the_kits_own_with_a_comment(league: League) -> None:
     shipped = kit_controllers()[0].file.read_bytes()
     (league.folder / "entries" / "mine.py").write_bytes(shipped + b"\n# all mine\n")
+
+
+def copy_of_the_house(league: League) -> None:
+    (league.folder / "entries" / "mine.py").write_bytes(house_programs()["slow"] + b"\n# all mine\n")
 
 
 def anothers_program_in_another_layout(league: League) -> None:
@@ -384,6 +419,7 @@ def program_that_fills_the_disk(league: League) -> None:
     [
         copy_of_the_kits_own,
         copy_of_the_kits_own_with_a_comment,
+        copy_of_the_house,
         anothers_program_in_another_layout,
         anothers_program_again,
         anothers_program_under_an_earlier_name,

@@ -1,0 +1,29 @@
+"""The programs of the house: entrants that come with the kit, so that whoever enters first has somebody to meet.
+
+They are one program at three speeds. Everybody meets them, they do not meet each other, and none of them has a place or a title.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+PROGRAM: Final = Path(__file__).with_name("house_program.py")
+SPEEDS: Final = {"slow": 0.2, "steady": 0.35, "quick": 0.5}
+"""The speed of each [m/s]."""
+SPEED_LINE: Final = b"SPEED = 0.5\n"
+"""Of the program, in whose place each has its own."""
+
+
+@cache
+def house_programs() -> dict[str, bytes]:
+    """The programs by name.
+
+    >>> [b"SPEED = 0.2" in program for program in house_programs().values()]
+    [True, False, False]
+    """
+    program = PROGRAM.read_bytes()
+    return {
+        name: program.replace(SPEED_LINE, f"SPEED = {speed:g}\n".encode()) for name, speed in SPEEDS.items()
+    }
