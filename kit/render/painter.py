@@ -16,12 +16,15 @@ from kit.render.role_looks import nearest_pen_role
 from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
 from kit.render.scene import Disc, Scene
 from kit.render.shading import FloorMap, lit_cells, seen_surfaces, shade_roles
-from kit.render.sprites import SpriteLayer
+from kit.render.sprites import SpriteLayer, size_in_rows
 
 FINE_DOTS = 1.5
 """From this many dots on, walls may be half a character thick without closing a way that is open."""
 
 NO_FACES: BoolArray = np.empty((0, 0), dtype=bool)
+
+LEAST_TARGET_ROWS = 3.0
+"""The outline of what stands on a target is left out where it has fewer rows: the symbol there would be a tangle with it."""
 
 
 class Painter:
@@ -68,7 +71,8 @@ class Painter:
             canvas.draw_dots(self._ring(target, camera), Role.TARGET)
         for body in scene.bodies:
             if body.is_target:
-                canvas.draw_outline(body, Role.TARGET)
+                if not scene.targets or size_in_rows(body, camera) >= LEAST_TARGET_ROWS:
+                    canvas.draw_outline(body, Role.TARGET)
             elif not body.is_robot:
                 canvas.draw_outline(body, Role.BODY)
                 canvas.fill(body, Role.BODY)

@@ -110,7 +110,7 @@ ROLE_LOOKS: Mapping[Role, RoleLook] = MappingProxyType(
         Role.PEN_BLUE: _pen("b", "blue", 0x5A6EE6),
         Role.PEN_MAGENTA: _pen("m", "magenta", 0xC85AC8),
         Role.WALL: _look("#", DEFAULT_STYLE, 0x8E99AC, 0x464D5C, 0xFFFFFF, 0x969EAA),
-        Role.WALL_HIT: _look(":", _YELLOW, 0xDEB264, 0xD68C34, 0xFFFF00, 0xF0E442),
+        Role.WALL_HIT: _look(":", RoleStyle("yellow", dim=True), 0xDEB264, 0xD68C34, 0xFFFF00, 0xF0E442),
         Role.BODY: _look("%", _BLUE, 0xE48C60, 0xA45424, 0xFFAA6E, 0xE69F00),
         Role.CURVE_4: _look("$", _GREEN, 0x96D66E, 0x1E7432, 0x00FF00, 0x00BC8C),
         Role.CURVE_3: _look("x", _YELLOW, 0xF4C85C, 0x965400, 0xFFFF00, 0xF0E442),

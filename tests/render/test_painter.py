@@ -427,3 +427,20 @@ def test_cells_are_drawn_where_they_are_known() -> None:
     assert (shaded.bg[row, middle + 2 : column - 1] == Role.FLOOR).all()
     assert not (shaded.bg[:, : middle - 2] == Role.FLOOR).any()
     assert not (shaded.fg == Role.FIELD).any()
+
+
+@pytest.mark.parametrize(("cell", "has_outline"), [(0.1, False), (0.03, True)])
+def test_the_outline_within_a_target_is_drawn_where_there_is_room_for_it(
+    cell: float, has_outline: bool
+) -> None:
+    beacon = SceneBody("beacon", Pose(0.0, 0.0), discs=(Disc(0.0, 0.0, 0.2),), is_target=True)
+    scene = Scene(bodies=(beacon,), targets=(Disc(0.0, 0.0, 0.6),))
+
+    def drawn(shown: Scene) -> list[str]:
+        return Painter(BrailleEncoder()).paint(shown, Camera(0, 0, cell, 60, 30)).rows()
+
+    assert (drawn(scene) != drawn(replace(scene, bodies=()))) is has_outline
+    alone = replace(scene, targets=())
+    assert drawn(alone) != drawn(replace(alone, bodies=())), (
+        "without a symbol it is all that shows the target"
+    )
