@@ -255,7 +255,7 @@ class LineStage:
     """Tells the scene of a step in words and a picture, its beginning and its end."""
 
     is_described = is_open = is_resting = True
-    is_recorded = is_paused = False
+    is_recorded = is_paused = is_roomy = False
 
     def __init__(self) -> None:
         self._scene: LessonScene | LearningScene | GraphScene | None = None

@@ -115,9 +115,13 @@ class Dialogue:
         return ()
 
     @property
-    def place_shown(self) -> str:
-        """The map of which a large screen shows a picture below what is asked; empty: none."""
-        return ""
+    def scenes_shown(self) -> Sequence[object]:
+        """The scenes of a lesson of which a large screen shows pictures below what is asked, as many as there is room for."""
+        return ()
+
+    def figure(self) -> Panel | None:
+        """What such a screen shows there instead of the picture, where it has room; None: nothing."""
+        return None
 
     def arrival_blocks(self) -> Sequence[Block]:
         """What is said line by line when one comes to a place, and stands elsewhere on a screen."""

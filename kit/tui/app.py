@@ -39,8 +39,8 @@ class KitApp(App[None]):
     KitApp.-themed Screen { background: $background; color: $foreground; }
     KitApp.-themed Dialog { background: $background 55%; }
     KitApp.-themed Dialog > Vertical { background: $background; }
-    ToastRack { align: center middle; }
-    Toast, Toast.-information { width: auto; max-width: 100%; margin: 0; padding: 0 1; border: none; background: $background; }
+    ToastRack { align: center middle; overflow-y: hidden; }
+    Toast, Toast.-information { width: 100%; max-width: 100%; margin: 0; padding: 0 1; border: none; background: $background; }
     KitApp.-ascii MessageDialog > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }
     """
 

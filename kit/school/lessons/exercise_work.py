@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
 from typing import Final
@@ -21,7 +22,8 @@ from kit.school.lessons.checking import (
     untouched_files,
 )
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.records import Exercise
+from kit.school.lessons.reading import exercise_scene
+from kit.school.lessons.records import Exercise, LessonScene
 from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
 
 UNANSWERED: Final = re.compile(r"\w+:\s*")
@@ -77,6 +79,11 @@ class ExerciseAttempt:
         self._drive_loop = DriveLoop()
         self.changed_line = 1
         """The first line that the last save has changed, counted from 1."""
+
+    @cached_property
+    def scene(self) -> LessonScene | None:
+        """The world in which the program is checked first; None where it drives in none."""
+        return exercise_scene(self.exercise)
 
     def edited_lines(self) -> tuple[str, ...]:
         """The file to edit as it was read last; empty where it cannot be read."""

@@ -414,13 +414,9 @@ class LessonDialogue(Dialogue):
                 if self.stage.is_recorded and not (work.report is not None and work.report.is_passed):
                     self.stage.open(self.step, still=self.begins_still)
         report = work.report
-        if (
-            not ended
-            or report is None
-            or not report.is_passed
-            or report.recording is None
-            or self.stage.is_described
-        ):
+        if not ended or report is None or report.recording is None or self.stage.is_described:
+            return None
+        if not report.is_passed and not self.stage.is_roomy:  # what is said of it needs the room
             return None
         file = report.recording
         return Work("", lambda _: _load_run(file), lambda run: self._play(work, run))

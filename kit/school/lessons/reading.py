@@ -257,6 +257,20 @@ def _read_original(folder: Path, *, is_foreign: bool) -> Lesson:
     return lesson
 
 
+def exercise_scene(exercise: Exercise) -> LessonScene | None:
+    """The world in which the check first drives the student's program, with nobody driving; None where it drives in none that has
+    a name, and where the assignment cannot be read, which its check tells."""
+    try:
+        with open_document(exercise.folder / ASSIGNMENT_FILE, is_partial=True) as section:
+            trial = next((each for each in section.sections("trials", ()) if each.has("place")), None)
+            if trial is None:
+                return None
+            case = trial.name("case") if trial.has("case") else None
+            return LessonScene(trial.name("place"), case, "", 1, trial.number("time", 10.0, above=0))
+    except WorldError:
+        return None
+
+
 def read_outcomes(folder: Path | None = None) -> Mapping[str, str]:
     """Reads the outcomes and practical concepts that lessons refer to, by id. Raises WorldError."""
     with open_document((lessons_folder() if folder is None else folder) / OUTCOMES_FILE) as section:

@@ -275,6 +275,11 @@ class Lesson:
     def exercises(self) -> tuple[Exercise, ...]:
         return tuple(step.exercise for step in self.steps if step.exercise is not None)
 
+    def scene_near(self, number: int) -> LessonScene | LearningScene | GraphScene | None:
+        """What moves in a step, else in the nearest one before it that has such a picture, else in the nearest one after it."""
+        steps = sorted(self.steps, key=lambda step: (step.number > number, abs(step.number - number)))
+        return next((step.scene or step.playback_scene for step in steps if step.moves), None)
+
     def step_subject(self, step: LessonStep) -> str:
         """The journal's subject for a step."""
         return f"{self.name}/{step.number}"

@@ -32,6 +32,10 @@ class Stage(RunStage, Protocol):
         """Whether it tells what is seen in words, at once, since nothing moves in it."""
 
     @property
+    def is_roomy(self) -> bool:
+        """Whether a run is seen beside everything that is said of it."""
+
+    @property
     def is_open(self) -> bool:
         """Whether there is something to see."""
 
@@ -66,7 +70,7 @@ class Stage(RunStage, Protocol):
 class NoStage:
     """Shows nothing."""
 
-    is_described = False
+    is_described = is_roomy = False
     is_open = is_resting = True
     is_recorded = is_paused = False
 

@@ -19,6 +19,7 @@ from kit.school.lessons.reading import (
     lessons_folder,
     with_lesson_numbers,
 )
+from kit.school.lessons.records import LessonScene
 from kit.school.lessons.translation import translation_of
 from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
@@ -47,6 +48,11 @@ class QuizTopic(StrEnum):
         """The topic's name on screen."""
         return _LABELS[self]
 
+    @property
+    def scene(self) -> LessonScene:
+        """The world that stands for the topic, with nobody driving."""
+        return LessonScene(_PLACES[self], None, "", 1, 10.0)
+
 
 _LABELS: Final[Mapping[QuizTopic, str]] = {
     QuizTopic.DRIVING: "driving",
@@ -55,6 +61,14 @@ _LABELS: Final[Mapping[QuizTopic, str]] = {
     QuizTopic.LAYERS: "layers",
     QuizTopic.RL: "learning",
     QuizTopic.FIELDS: "potential fields",
+}
+_PLACES: Final[Mapping[QuizTopic, str]] = {
+    QuizTopic.DRIVING: "maze",
+    QuizTopic.ROS2: "simple",
+    QuizTopic.FLATLAND: "house",
+    QuizTopic.LAYERS: "crossing",
+    QuizTopic.RL: "turn",
+    QuizTopic.FIELDS: "pair_turn",
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from enum import Enum
 from types import MappingProxyType
 from typing import Any, ClassVar, Final
@@ -11,8 +12,11 @@ from kit.dialogue.dialogue import Dialogue, DialogueAction, Panel, help_action, 
 from kit.dialogue.effects import Effect, Leave
 from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.dialogue.shared_actions import ACTIONS
-from kit.document.blocks import Block, Choice, Choices, KeyLine, Picture, Text, Tone
+from kit.document.blocks import Block, Choice, Choices, KeyLine, Marked, Picture, Text, Tone
 from kit.school.lessons.glossary import glossary_action, lesson_words
+from kit.school.lessons.reading import find_lesson
+from kit.school.lessons.records import GraphScene, LearningScene, Lesson, LessonScene, LessonStep
+from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.progress import ProgressError
 from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOutcome
 from kit.school.quiz.items import OPTION_COUNT, QuizItem, QuizTopic, lesson_reference
@@ -33,6 +37,7 @@ from kit.school.quiz.quiz_text import (
     topic_map,
     verdict_text,
 )
+from kit.world.problems import WorldError
 
 
 class QuizStage(Enum):
@@ -53,15 +58,7 @@ KEPT: Final = (
     ("what is kept", "every answer, once you have said how sure you are"),
     ("what comes back", "topics, after 1, 3, 7 and 21 days: kit quiz --today"),
 )
-PLACES: Final = {
-    QuizTopic.DRIVING: "maze",
-    QuizTopic.ROS2: "simple",
-    QuizTopic.FLATLAND: "house",
-    QuizTopic.LAYERS: "crossing",
-    QuizTopic.RL: "turn",
-    QuizTopic.FIELDS: "pair_turn",
-}
-"""The map that stands for each topic, where there is room for its picture."""
+ANSWERED: Final = "answered just now"
 HOW_IT_GOES: Final = (
     Text(
         "Choose an answer, then say how sure you are. Only then is it recorded, and are you told whether it is right."
@@ -91,6 +88,8 @@ class QuizDialogue(Dialogue):
         self.item: QuizItem | None = session.current_item
         self.number = session.question_number
         self.choice: AnswerChoice | None = None
+        self._lessons: dict[str, Lesson | None] = {}
+        """Those that teach what was asked; None: it cannot be read, which is told where it is opened."""
         self.stage = QuizStage.ASKED if self.item is not None else QuizStage.OVER
 
     # What is shown
@@ -146,33 +145,67 @@ class QuizDialogue(Dialogue):
             shown += self._feedback(item, self.choice)
         return shown
 
-    @property
-    def has_panels(self) -> bool:
-        return self.item is not None and not self.is_over
+    has_panels = True
 
     def panels(self) -> Sequence[Panel]:
         item, session = self.item, self.session
-        if item is None or self.is_over:
-            return ()
         answers = session.all_answers()
+        just_now = Panel(ANSWERED, answered_blocks(session.bank, session.session_answers))
+        comes_back = Panel("what comes back, and when", tuple(schedule_blocks(session.build_schedule())))
+        known = Panel(
+            "what you know, by topic",
+            (topic_map(session.bank, answers, None if item is None else item.topic),),
+        )
+        if item is None or self.is_over:  # the question that was answered last is still the item
+            return known, comes_back, just_now
         last = (
             Panel(f"words of {lesson_reference(item.lesson)}", lesson_words(item.lesson))
             if self.stage is QuizStage.TOLD
-            else Panel("answered just now", answered_blocks(session))
+            else just_now
             if session.session_answers
             else Panel("how it goes", HOW_IT_GOES)
         )
         return (
-            Panel("what you know, by topic", (topic_map(session.bank, answers, item.topic),)),
+            known,
             Panel("these questions", round_blocks(session, self.number)),
             Panel(CALIBRATION_HEADING.lower(), tuple(calibration_blocks(measure_calibration(answers)))),
-            Panel("what comes back, and when", tuple(schedule_blocks(session.build_schedule()))),
+            comes_back,
             *([last] if last.blocks else []),
         )
 
+    def _taught_by(self, item: QuizItem) -> tuple[Lesson, LessonStep] | None:
+        """The lesson and the step that teach the answer to a question."""
+        folder, _, number = item.lesson_to_repeat.partition("/")
+        if folder not in self._lessons:
+            self._lessons[folder] = None
+            with suppress(WorldError, LookupError, OSError):
+                self._lessons[folder] = find_lesson(folder)
+        lesson = self._lessons[folder]
+        return None if lesson is None else (lesson, lesson.steps[int(number or 1) - 1])
+
     @property
-    def place_shown(self) -> str:
-        return PLACES[QuizTopic.DRIVING if self.item is None else self.item.topic]
+    def scenes_shown(self) -> Sequence[LessonScene | LearningScene | GraphScene]:
+        """What moves in the lesson nearest to where the answer is taught; below nodes, which are low, and where nothing moves
+        there, the topic's world."""
+        topic = QuizTopic.DRIVING if self.item is None else self.item.topic
+        taught = None if self.item is None else self._taught_by(self.item)
+        near = None if taught is None else taught[0].scene_near(taught[1].number)
+        if near is None:
+            return (topic.scene,)
+        return (near, topic.scene) if isinstance(near, GraphScene) else (near,)
+
+    def figure(self) -> Panel | None:
+        """Once the answer is told, the step that teaches it."""
+        if (
+            self.item is None
+            or self.stage is not QuizStage.TOLD
+            or (taught := self._taught_by(self.item)) is None
+        ):
+            return None
+        lesson, step = taught
+        picture = [Picture(tuple(step.picture.splitlines()))] if step.picture else []
+        title = f"lesson {lesson.number}, step {step.number}: {step.title}"
+        return Panel(title, (*picture, Marked(fill_in_paths(step.text, None))))
 
     def _options(self, item: QuizItem) -> list[Block]:
         """``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""

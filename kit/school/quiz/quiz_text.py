@@ -7,7 +7,7 @@ from datetime import date
 from typing import Final
 
 from kit.document.blocks import Block, CellStyle, Column, Picture, Table, Text, Tone, ToneText
-from kit.school.lessons.reading import lesson_number
+from kit.school.lessons.reading import lesson_number, lesson_title
 from kit.school.quiz.answers import CONFIDENCE_LABELS, AnswerChoice, AnswerOutcome, QuizAnswer
 from kit.school.quiz.items import (
     QuestionBank,
@@ -132,14 +132,31 @@ def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> Table:
     return Table("topics", "", columns, rows, is_ruled=False)
 
 
-def topic_map(bank: QuestionBank, answers: Iterable[QuizAnswer], current: QuizTopic) -> Table:
-    """What is known of each topic, by the latest answer to each of its questions, and which one is asked now."""
+def lesson_table(bank: QuestionBank, answers: Iterable[QuizAnswer]) -> Table:
+    """What is known of the questions of each lesson, by the latest answer to each."""
+    latest = latest_answers(answers)
+    rows = tuple(
+        (lesson_number(lesson), lesson_title(lesson), _bar(counts), f"{counts.right} of {counts.total}")
+        for lesson in bank.lessons
+        for counts in (count_outcomes(bank.lesson_items(lesson), latest),)
+    )
+    return Table("lessons", "", (Column("", _WORDS),) * 3 + (Column(""),), rows)
+
+
+def _bar(counts: OutcomeCounts) -> str:
+    """The share of right answers."""
+    filled = round(MAP_BAR * counts.right / counts.total)
+    return "━" * filled + "─" * (MAP_BAR - filled)
+
+
+def topic_map(bank: QuestionBank, answers: Iterable[QuizAnswer], current: QuizTopic | None = None) -> Table:
+    """What is known of each topic, by the latest answer to each of its questions, and which one is asked now, if any."""
     counts = count_by_topic(bank.items, latest_answers(answers))
     rows = tuple(
         (
             ">" if topic is current else "",
             ToneText(topic.label, Tone.BOLD if topic is current else Tone.PLAIN),
-            "━" * (filled := round(MAP_BAR * each.right / each.total)) + "─" * (MAP_BAR - filled),
+            _bar(each),
             f"{each.right} of {each.total}",
         )
         for topic, each in counts.items()
@@ -170,14 +187,18 @@ def round_blocks(session: QuizSession, number: int) -> tuple[Block, ...]:
     return Text(" ".join(marks), Tone.BOLD), Picture((said,), indent=0, tone=Tone.DIM, is_tight=True)
 
 
-def answered_blocks(session: QuizSession) -> tuple[Block, ...]:
-    """The questions that were answered in this session, the last one first."""
-    items = {each.id: each for each in session.bank.items}
-    return tuple(
-        Text(items[each.item].question, Tone.DIM, lead=MARKS[each.outcome], hang=2, is_tight=True)
-        for each in reversed(session.session_answers)
-        if each.item in items
-    )
+def answered_blocks(bank: QuestionBank, answers: Sequence[QuizAnswer]) -> tuple[Block, ...]:
+    """The questions that were answered, the last one first, each with the right answer where another one was given."""
+    items, blocks = bank.items_by_id(), list[Block]()
+    for each in reversed(answers):
+        item = items.get(each.item)
+        if item is None:
+            continue
+        blocks.append(Text(item.question, Tone.DIM, lead=MARKS[each.outcome], hang=2, is_tight=True))
+        if each.outcome is not AnswerOutcome.RIGHT:
+            right = item.options[item.right_option].text
+            blocks.append(Text(right, lead=MARKS[AnswerOutcome.RIGHT], indent=2, hang=2, is_tight=True))
+    return tuple(blocks)
 
 
 def calibration_blocks(calibration: Calibration) -> list[Block]:

@@ -11,6 +11,8 @@ from textual.binding import Binding, BindingType
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
 
+FOOTER_ROWS: Final = 2
+"""Rows of a line of keys below a text: an empty one sets it apart."""
 KEY_WIDTH: Final = 17
 """Columns of the keys on a help page."""
 KEPT: Final = frozenset(("help", "back", "quit", "palette"))

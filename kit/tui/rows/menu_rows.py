@@ -35,19 +35,27 @@ class MenuItem:
     """Name of the screen's method that opens it."""
     title: str
     about: str
+    words: str = ""
+    """Other words by which the palette finds it."""
 
 
 MENU: Final = (
-    MenuItem("next_lesson", "Next lesson", "The first step that is not done yet."),
-    MenuItem("lessons", "Lessons", "In order: predict, run, explain, change, make."),
-    MenuItem("drive", "Drive", "Any map and any program, your own too."),
-    MenuItem("levels", "Levels", "The game: drive for medals, race programs and agents."),
-    MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
-    MenuItem("layers", "Layers", "The fewest layers for what must collide and be seen."),
-    MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
-    MenuItem("form", "Form", "What you knew before, and what you have learned."),
-    MenuItem("progress", "Progress", "What you have done, and how to export it."),
-    MenuItem("league", "League", "Programs and agents race, play tag and are rated."),
+    MenuItem("next_lesson", "Next lesson", "The first step that is not done yet.", "continue learn"),
+    MenuItem("lessons", "Lessons", "In order: predict, run, explain, change, make.", "course exercises"),
+    MenuItem("drive", "Drive", "Any map and any program, your own too.", "play simulate controller"),
+    MenuItem(
+        "levels", "Levels", "The game: drive for medals, race programs and agents.", "puzzles challenges"
+    ),
+    MenuItem(
+        "train", "Train", "Train an agent to drive, and watch it learn.", "trainings learning runs sweeps"
+    ),
+    MenuItem(
+        "layers", "Layers", "The fewest layers for what must collide and be seen.", "collisions planner"
+    ),
+    MenuItem("quiz", "Quiz", "What do you know, and how sure are you?", "questions scores practice"),
+    MenuItem("form", "Form", "What you knew before, and what you have learned.", "evaluation survey"),
+    MenuItem("progress", "Progress", "What you have done, and how to export it.", "medals streak results"),
+    MenuItem("league", "League", "Programs and agents race, play tag and are rated.", "tournament ratings"),
 )
 MENU_KEYS: Final = "123456789l"
 """The keys of its lines."""

@@ -130,7 +130,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     async def _draw_beside(self) -> None:
         """Shows what the answer is about beside the page, where there is room."""
         width, height = self.size.width, self.size.height
-        shown = await to_thread(self._beside_page, width - COLUMN, height - 4) if width >= WIDE else []
+        shown = await to_thread(self._beside_page, width - COLUMN, height - 5) if width >= WIDE else []
         self._beside = tuple(shown)
         self._renew()
 

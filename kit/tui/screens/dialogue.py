@@ -18,12 +18,14 @@ from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, fitted, row, text_width, window
+from kit.school.lessons.records import GraphScene, LearningScene, LessonScene
 from kit.tui.loop_calls import called_in_loop
-from kit.tui.rows.key_rows import footer
+from kit.tui.rows.key_rows import FOOTER_ROWS, footer
 from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import page_screen
+from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.world_view import WorldView
 
@@ -43,10 +45,10 @@ LEAST_ROWS_IN_MIDDLE: Final = 24
 """A screen with no more rows shows the question at its top."""
 ROOMY_ROWS: Final = 36
 """A screen with no fewer rows has room for empty ones between choices."""
-ROWS_AROUND: Final = 3
+ROWS_AROUND: Final = 2 + FOOTER_ROWS
 """Rows of the heading, the remark and the keys."""
-ROWS_ABOVE_PICTURE: Final = 22
-"""Rows that a question and what is said to its answer seldom exceed: they are kept free of the picture."""
+ROWS_FOR_MORE: Final = 3
+"""Rows that are kept free above the picture for what is asked next."""
 LEAST_PICTURE, MOST_PICTURE = 9, 25
 """Rows of the picture below the question; where there are fewer it is left out."""
 POLL_S: Final = 0.2
@@ -80,9 +82,11 @@ class DialogueScreen(RowsScreen[None]):
     DEFAULT_CSS = """
     DialogueScreen { layout: vertical; }
     DialogueScreen #heading, DialogueScreen #remark, DialogueScreen #keys { height: 1; }
+    DialogueScreen #keys { margin: 1 0 0 0; }
     DialogueScreen #middle, DialogueScreen #body, DialogueScreen #below { height: 1fr; }
     DialogueScreen #panels { width: 1fr; height: 1fr; }
-    DialogueScreen #panels, DialogueScreen #below, DialogueScreen AnswerField, DialogueScreen WorldView { display: none; }
+    DialogueScreen #panels, DialogueScreen #below, DialogueScreen AnswerField { display: none; }
+    DialogueScreen WorldView, DialogueScreen PlaybackSceneView { display: none; }
     """
 
     def __init__(self, dialogue: Dialogue) -> None:
@@ -99,9 +103,14 @@ class DialogueScreen(RowsScreen[None]):
         """The place whose text is in the field."""
         self._top = 0
         self._body_height: int | str = "1fr"
-        self._picture: WorldView | None = None
-        self._place = ""
-        """The map that the picture shows, or will."""
+        self._world: WorldView | None = None
+        self._playback: PlaybackSceneView | None = None
+        """The two that show scenes; None: the dialogue has none."""
+        self._shown_world: LessonScene | None = None
+        """The scene whose world is shown, or will be."""
+        self._picture_rows = 0
+        self._measured: object = None
+        """For which question, on a screen of which size, the picture has so many rows."""
         self._placed: tuple[int, int, bool] | None = None
         """Columns of the question, rows of the picture and whether there are panels, as the screen was last laid out."""
 
@@ -116,10 +125,12 @@ class DialogueScreen(RowsScreen[None]):
                     self._field = AnswerField()
                     yield self._field
                     yield TextRows(id="below")
-                if self.dialogue.place_shown:
+                if self.dialogue.scenes_shown:
                     theme = cast("KitApp", self.app).kit_theme
-                    self._picture = WorldView(lambda: theme.encoder, theme.palette)
-                    yield self._picture
+                    self._world = WorldView(lambda: theme.encoder, theme.palette)
+                    self._playback = PlaybackSceneView(theme)
+                    yield self._world
+                    yield self._playback
             yield TextRows(id="panels")
         yield TextRows(id="remark")
         yield TextRows(id="keys")
@@ -152,14 +163,17 @@ class DialogueScreen(RowsScreen[None]):
         if not self.is_attached:
             return
         self._show_body()
-        self._show_place()
         self._rows("heading").show([self._heading()])
         self._rows("remark").show([fitted(self._remark(), self.room.width)])
         self._rows("keys").show([self._keys()])
 
     def _show_body(self) -> None:
         whole, room = self._body(), self._body_room
-        picture = self._picture_rows if len(whole) <= room - self._picture_rows else 0
+        figure = self._figure(room - len(whole))
+        whole += figure
+        picture = self._fitting_picture(room - len(whole))
+        if picture:
+            self._show_scenes()
         self._lay_out(picture)
         self._show_field()
         body, self._top = window(whole, self._top, room - picture)
@@ -194,20 +208,49 @@ class DialogueScreen(RowsScreen[None]):
         self._placed = columns, picture, has_panels
         self.query_one("#question").styles.width = columns
         self._rows("panels").display = has_panels
-        if self._picture is not None:
-            self._picture.display = bool(picture)
-            self._picture.styles.height = picture
-            self._picture.styles.margin = (0, MARGIN, 0, self._left + MARGIN)
+        self._lay_out_scenes(picture)
 
-    def _show_place(self) -> None:
-        """The picture of the map that belongs to the question, as soon as it is read."""
-        if self._picture is not None and self._picture.display and self._place != self.dialogue.place_shown:
-            self._place = self.dialogue.place_shown
-            self._read_place(self._picture)
+    def _lay_out_scenes(self, rows: int) -> None:
+        """Gives the pictures their rows, the upper one as many as it has a use for."""
+        if self._world is None or self._playback is None:
+            return
+        is_played, is_world = self._playback.scene is not None, self._shown_world is not None
+        upper = 0 if not is_played else min(rows, self._playback.rows or rows) if is_world else rows
+        lower = rows - upper if is_world and rows - upper >= LEAST_PICTURE else 0
+        for view, height in ((self._playback, upper), (self._world, lower)):
+            view.display = height > 0
+            view.styles.height = height
+            view.styles.margin = (0, MARGIN, 0, self._left + MARGIN)
 
-    @work(exclusive=True, group="place")
-    async def _read_place(self, picture: WorldView) -> None:
-        picture.show(await to_thread(scene_of_place, self._place))
+    def _show_scenes(self) -> None:
+        """Reads the scenes that belong to the question: what is played at once, a world in another thread."""
+        if self._world is None or self._playback is None:
+            return
+        scenes = self.dialogue.scenes_shown
+        world = next((each for each in scenes if isinstance(each, LessonScene)), None)
+        played = next((each for each in scenes if isinstance(each, LearningScene | GraphScene)), None)
+        if played is not self._playback.scene:
+            self._placed = None
+            if played is None:
+                self._playback.close_session()
+            else:
+                self._playback.open(played, still=True)
+        if world != self._shown_world:
+            self._placed, self._shown_world = None, world
+            if world is not None:
+                self._read_world(self._world, world)
+
+    @work(exclusive=True, group="scene")
+    async def _read_world(self, picture: WorldView, scene: LessonScene) -> None:
+        picture.show(await to_thread(scene_of_place, scene))
+
+    def _figure(self, room: int) -> list[Row]:
+        """What stands below the question in place of the picture, indented as the question is. ``room``: rows."""
+        figure = self.dialogue.figure() if self._has_panels else None
+        if figure is None:
+            return []
+        width = text_width(self.room.width, self._widest - 2 * MARGIN)
+        return [row(" " * MARGIN, *each) if each else each for each in panel_rows([figure], width, room)]
 
     def _body(self) -> list[Row]:
         return [row(), *rows_of(self.dialogue.blocks(), self._text_page)]
@@ -216,11 +259,14 @@ class DialogueScreen(RowsScreen[None]):
     def _body_room(self) -> int:
         return max(1, self.room.height - ROWS_AROUND)
 
-    @property
-    def _picture_rows(self) -> int:
-        """Rows of the picture below the question, however long that is; 0 where there is no room."""
-        rows = min(MOST_PICTURE, self._body_room - ROWS_ABOVE_PICTURE)
-        return rows if self._picture is not None and self._has_panels and rows >= LEAST_PICTURE else 0
+    def _fitting_picture(self, left: int) -> int:
+        """Rows of the picture below the question: as many as there were at first, and fewer once the words leave fewer; 0 where
+        there is no room. ``left``: rows without words."""
+        place = self.room, self.dialogue.place
+        if place != self._measured:
+            self._measured, self._picture_rows = place, min(MOST_PICTURE, left - ROWS_FOR_MORE)
+        rows = min(self._picture_rows, left - 1)
+        return rows if self._world is not None and self._has_panels and rows >= LEAST_PICTURE else 0
 
     @property
     def _has_panels(self) -> bool:
@@ -445,12 +491,12 @@ def _no_effect() -> Effect:
     return None
 
 
-def scene_of_place(name: str) -> Scene:
-    """A map before anybody drives. Takes a while: not to be called by what draws."""
+def scene_of_place(scene: LessonScene) -> Scene:
+    """The world of a scene before anybody drives. Takes a while: not to be called by what draws."""
     from kit.run.scenario import find_scenario  # of no use to the first frame
     from kit.tui.screens.level_pictures import first_scene
 
-    return first_scene(find_scenario(name, None))
+    return first_scene(find_scenario(scene.map_name, scene.case))
 
 
 def centred(

@@ -35,7 +35,7 @@ from kit.tui.input.driver import key_driver
 from kit.tui.input.key_parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
-from kit.tui.rows.key_rows import key_row
+from kit.tui.rows.key_rows import FOOTER_ROWS, key_row
 from kit.tui.screens.defence import DefenceScreen
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
@@ -69,6 +69,8 @@ EDITOR_KEYS: Final = (
     ("Ctrl-X Ctrl-V", "there: cut, paste; shift with the arrows selects"),
     ("Esc", "there: back to the task; the editor stays open"),
 )
+ROWS_AROUND: Final = 2 + FOOTER_ROWS
+"""Rows of the two headings and of the keys."""
 HIGH: Final = 45
 """Rows of a screen with room for all steps of a lesson."""
 LEAST_STEPS: Final = 2
@@ -80,6 +82,7 @@ class ScenePair:
     """The stage on the full screen: a world, or tables and messages that are played back; one of them is seen at a time."""
 
     is_described: Final = False
+    is_roomy = False
 
     def __init__(self, world: LessonSceneView, playback: PlaybackSceneView) -> None:
         self.world = world
@@ -223,12 +226,13 @@ class LessonScreen(DialogueScreen, DriveScreen):
         # With the empty row before it.
         answer = max((len(self._placed_rows(each)) + 1 for each in dialogue.possible_answers()), default=0)
         is_roomy = layout is PageLayout.ROOMY
-        hides_work = dialogue.has_ended or self.stage.is_recorded
+        self.stage.is_roomy = is_roomy
+        hides_work = dialogue.has_ended or (self.stage.is_recorded and not is_roomy)
         drawn = [] if hides_work else self._work_picture(self._width - 2, is_roomy=is_roomy)
         asked = dialogue.prediction_blocks()
         question = [row(), *self._placed_rows(asked)] if asked else []
         shown = () if hides_work else tuple(drawn or step.picture.splitlines())
-        room = self.room.height - 3 - len(file) - len(status)
+        room = self.room.height - ROWS_AROUND - len(file) - len(status)
         most_words = self._said_row + answer
         if is_roomy and most_words + len(question) + len(shown) <= room:
             # What is said to the answer stands below the question, and neither moves.
@@ -236,11 +240,14 @@ class LessonScreen(DialogueScreen, DriveScreen):
             words, question = [*words[: self._said_row], *question, *words[self._said_row :]], []
         has_work = work is not None and not work.by_hand and (is_roomy or not self._is_editing)
         lines = work.edited_lines() if work is not None and has_work else ()
+        moves = self.stage.scene if dialogue.has_scene and (is_roomy or not drawn) else None
+        is_backdrop = moves is None and is_roomy and bool(lines) and self._opens_backdrop()
         content = LessonContent(
             words,
             question,
             shown,
-            moves=self.stage.scene if dialogue.has_scene and not drawn else None,
+            moves=self.stage.world if is_backdrop else moves,
+            is_backdrop=is_backdrop,
             # Not all at once, where there is little room.
             moves_rows=self._playback_rows,
             first_words=max(self._said_row, answer, len(words) - self._said_row),
@@ -255,6 +262,14 @@ class LessonScreen(DialogueScreen, DriveScreen):
             page_width=width,
         )
         self._page.show(content, room - self._editor_rows(room), layout)
+
+    def _opens_backdrop(self) -> bool:
+        """Opens the world in which the exercise's program will drive, where there is one; says whether."""
+        work = self.dialogue.work
+        scene = None if work is None else work.scene
+        if scene is not None and self.stage.world.scene != scene:
+            self.stage.world.open(scene, still=True)
+        return scene is not None
 
     def _panels(self) -> list[Panel]:
         """What a large screen has besides: the lesson's steps, and the words that it introduces."""
@@ -543,7 +558,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         if work is None or self.dialogue.has_ended or work.edited_file != editor.program.file:
             self._close_editor()
             return
-        height = self.room.height - 3 - 1
+        height = self.room.height - ROWS_AROUND - 1
         editor.styles.height = self._editor_rows(height) or "1fr"
         editor.styles.width = self._editor_width or "1fr"
         line = 0 if work.seconds is not None else work.error_line

@@ -134,8 +134,10 @@ class LevelsScreen(RowsScreen[None]):
         journal: ProgressJournal,
         workspace: Workspace,
         first: GameLevel | Challenge | None = None,
+        action: str = "",
     ) -> None:
-        """``first``: opened at once, but for a challenge whose clock then begins: that is chosen."""
+        """``first``: opened at once, but for a challenge whose clock then begins: that is chosen. ``action``: what is done at
+        once."""
         super().__init__()
         self._theme = theme
         self._progress = journal
@@ -144,7 +146,7 @@ class LevelsScreen(RowsScreen[None]):
         self._challenges = all_challenges()
         self._challenge_medals: dict[str, Medal] = {}
         self._levels = all_levels()
-        self._first = first
+        self._first, self._action = first, action
         self._found: tuple[LevelProgress, ...] = ()
         self._known: dict[str, tuple[Ghost, ...]] = {}
         self._references = {each.id: reference_seconds(each) for each in self._levels}
@@ -183,6 +185,8 @@ class LevelsScreen(RowsScreen[None]):
             self._drive_first(self._first)
         elif self._first is not None and self._first.task.clock is None:
             self.call_after_refresh(self.action_open)
+        if self._action:
+            self.call_after_refresh(self.run_action, self._action)
 
     def _choose_cut_short(self) -> None:
         """Names and chooses the level of a drive that a dropped link has ended: it goes on there."""

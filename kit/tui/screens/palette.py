@@ -26,6 +26,8 @@ class PaletteCommand:
     name: str
     text: str
     run: Callable[[], Awaitable[object]]
+    words: str = ""
+    """Words by which it is found too."""
 
 
 @runtime_checkable
@@ -52,7 +54,10 @@ async def open_palette(app: App[None], switch_theme: Callable[[str], None]) -> N
 
 
 def _command_items(commands: Sequence[PaletteCommand]) -> list[PickerItem]:
-    return [PickerItem(str(number), command.name, command.text) for number, command in enumerate(commands)]
+    return [
+        PickerItem(str(number), command.name, command.text, command.words)
+        for number, command in enumerate(commands)
+    ]
 
 
 def _screen_commands(screen: Screen[Any]) -> Iterator[PaletteCommand]:
@@ -82,7 +87,8 @@ def _mouse_commands(app: App[None]) -> Iterator[PaletteCommand]:
         if is_wanted
         else ("Mouse for the terminal", "text can be selected and copied")
     )
-    yield PaletteCommand(name, f"{text}; for this session, {MOUSE_VARIABLE}={is_wanted:d} keeps it", switch)
+    about = f"{text}; for this session, {MOUSE_VARIABLE}={is_wanted:d} keeps it"
+    yield PaletteCommand(name, about, switch, "settings")
 
 
 def _theme_commands(app: App[None], switch_theme: Callable[[str], None]) -> Iterator[PaletteCommand]:
@@ -93,4 +99,5 @@ def _theme_commands(app: App[None], switch_theme: Callable[[str], None]) -> Iter
         async def switch(name: str = name) -> None:
             switch_theme(name)
 
-        yield PaletteCommand(f"Theme {name}", f"for this session; KIT_THEME={name} keeps it", switch)
+        about = f"for this session; KIT_THEME={name} keeps it"
+        yield PaletteCommand(f"Theme {name}", about, switch, "settings colours colors")

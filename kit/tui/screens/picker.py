@@ -27,7 +27,9 @@ HIGHEST: Final = 22
 ROWS_AROUND: Final = 3
 """Rows of these alone."""
 CHOOSING: Final = "arrows choose, Enter confirm, Esc back"
-NOTHING_FOUND: Final = "nothing has these letters, Esc back"
+NOTHING_FOUND: Final = "Nothing here has these words."
+WAY_ON: Final = "Backspace takes letters back; fewer of them may find it."
+DELETING: Final = "Backspace delete, Esc back"
 COLUMNS_AROUND: Final = 7
 """Columns of the border, of the mark of the chosen line and of the scroll bar."""
 
@@ -39,6 +41,16 @@ class PickerItem:
     key: str
     name: str
     text: str = ""
+    words: str = ""
+    """Words that are not shown, and by which it is found too."""
+
+    def rank(self, wanted: Sequence[str]) -> int | None:
+        """The place of the line among those with all these words, in small letters: first those that have them in their names;
+        None: it has not all of them."""
+        name, text = self.name.casefold(), self.text.casefold()
+        if not all(each in f"{name} {text} {self.words}" for each in wanted):
+            return None
+        return 0 if " ".join(wanted) in name else 1 if all(each in name for each in wanted) else 2
 
 
 class FilterInput(Input):
@@ -119,7 +131,7 @@ class Picker(Dialog[str | None]):
     def on_input_submitted(self) -> None:
         options = self.query_one(OptionList)
         self._is_entered = options.highlighted is None
-        if options.highlighted is not None:
+        if self._shown and options.highlighted is not None:
             self.dismiss(options.get_option_at_index(options.highlighted).id)
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
@@ -130,7 +142,7 @@ class Picker(Dialog[str | None]):
 
     def action_choose(self, columns: int, rows: int) -> None:
         options = self.query_one(OptionList)
-        if options.option_count:
+        if self._shown:
             at = (options.highlighted or 0) + rows
             options.highlighted = min(max(at, 0), options.option_count - 1)
 
@@ -150,8 +162,9 @@ class Picker(Dialog[str | None]):
                 self.on_input_submitted()
 
     def _fill(self, name_filter: str) -> None:
-        wanted = name_filter.casefold()
-        shown = [choice for choice in self._choices if wanted in f"{choice.name} {choice.text}".casefold()]
+        wanted = name_filter.casefold().split()
+        ranked = [(rank, choice) for choice in self._choices if (rank := choice.rank(wanted)) is not None]
+        shown = [choice for _, choice in sorted(ranked, key=lambda each: each[0])]
         options = self.query_one(OptionList)
         keys = [choice.key for choice in shown]
         at = keys.index(self._chosen) if self._chosen in keys else 0
@@ -161,7 +174,9 @@ class Picker(Dialog[str | None]):
             for number, choice in enumerate(shown)
         )
         self._shown, self._marked = shown, at
-        self.query_one(Vertical).border_subtitle = CHOOSING if shown else NOTHING_FOUND
+        if not shown:
+            options.add_option(Option(Text(f"{NOTHING_FOUND}\n{WAY_ON}"), disabled=True))
+        self.query_one(Vertical).border_subtitle = CHOOSING if shown else DELETING
         if not wanted:  # a filter leaves the list as high as it is, so that it does not move
             rows = sum(
                 option.prompt.plain.count("\n") + 1

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from asyncio import to_thread
-from typing import Any
+from typing import Any, Final
 
 from textual.screen import Screen
 
+from kit.document.blocks import Text, Tone
 from kit.school.lessons.reading import lesson_number, lesson_title
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.school.quiz.answers import answers_from_events
@@ -21,7 +22,7 @@ from kit.school.quiz.quiz_session import (
     quiz_plan,
     student_seed,
 )
-from kit.school.quiz.quiz_text import scores_blocks, today_line
+from kit.school.quiz.quiz_text import answered_blocks, lesson_table, scores_blocks, today_line
 from kit.school.quiz.schedule import build_schedule
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
@@ -29,6 +30,11 @@ from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import page_screen
 from kit.world.problems import WorldError
 
+ANSWERED_LAST: Final = "Answered last"
+MOST_ANSWERED: Final = 12
+"""Answers that the scores list."""
+SCORES_COLUMNS: Final = 3
+"""Of the scores, where there is room for as many."""
 TWELVE, TODAY, SCORES = "twelve", "today", "scores"
 
 
@@ -56,8 +62,15 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
     ]
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
-        blocks = scores_blocks(bank, answers_from_events(events), schedule)
-        await screen.app.push_screen_wait(page_screen("Scores", blocks))
+        answers = answers_from_events(events)
+        blocks = [
+            *scores_blocks(bank, answers, schedule),
+            Text("By lesson", Tone.BOLD),
+            lesson_table(bank, answers),
+        ]
+        if answers:
+            blocks += [Text(ANSWERED_LAST, Tone.BOLD), *answered_blocks(bank, answers[-MOST_ANSWERED:])]
+        await screen.app.push_screen_wait(page_screen("Scores", blocks, SCORES_COLUMNS))
     elif chosen is not None:
         await _ask(screen, journal, bank, plans[chosen])
 

@@ -50,6 +50,8 @@ VAST: Final = 190
 """Columns from which on the robot's picture leaves room for a wide panel."""
 WITH_VAST: Final = [*BREAKPOINTS, (VAST, "-vast")]
 PLACE, CONTROLLER = "maze", "random_walk"
+PARTS_OF_GAME: Final = {"daily": "maze today race", "two_players": "multiplayer", "leaderboard": "records"}
+"""Actions of the game's screen that the palette lists too, and other words by which it finds them."""
 
 
 class StartScreen(PlayScreen, inherit_bindings=False):
@@ -244,11 +246,31 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.world.catalogue import all_maps
 
         overview = await self._current_overview()
+        from kit.tui.screens.levels import LevelsScreen
+
+        of_game = {each.id: each for each in LevelsScreen.screen_actions.own}
         levels, puzzles = await to_thread(all_levels), await to_thread(all_challenges)
         return [
             *(
-                PaletteCommand(item.title, item.about, self._opener(getattr(self, f"_open_{item.name}")))
+                PaletteCommand(
+                    item.title, item.about, self._opener(getattr(self, f"_open_{item.name}")), item.words
+                )
                 for item in MENU
+            ),
+            *(
+                PaletteCommand(
+                    of_game[name].label.capitalize(),
+                    of_game[name].help,
+                    self._opener(partial(self._open_levels, None, name)),
+                    words,
+                )
+                for name, words in PARTS_OF_GAME.items()
+            ),
+            PaletteCommand(
+                "Key test",
+                "press keys and see what arrives on this terminal",
+                self._opener(self._open_key_test),
+                "settings keyboard",
             ),
             *(
                 PaletteCommand(
@@ -352,17 +374,22 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             )
         )
 
-    async def _open_levels(self, first: GameLevel | Challenge | None = None) -> None:
+    async def _open_levels(self, first: GameLevel | Challenge | None = None, action: str = "") -> None:
         from kit.school.progress import ProgressError
         from kit.tui.screens.levels import LevelsScreen
 
         try:
             journal = await to_thread(self._store.progress)
-            screen = LevelsScreen(self._theme, journal, self._store.workspace, first)
+            screen = LevelsScreen(self._theme, journal, self._store.workspace, first, action)
         except (ProgressError, FileNotFoundError) as error:
             self.app.push_screen(MessageDialog("The levels cannot be opened", str(error)))
             return
         await self._open_then_return(screen)
+
+    async def _open_key_test(self) -> None:
+        from kit.tui.screens.key_test import KeyTestScreen
+
+        await self._open_then_return(KeyTestScreen(self._theme.terminal))
 
     async def _open_train(self) -> None:
         from kit.tui.screens.trainings import TrainingsScreen

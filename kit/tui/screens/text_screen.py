@@ -59,6 +59,8 @@ class TextScreen(ActivePaintScreen[None]):
             self._width = self.size.width
             together = self._arranged(self._width, room)
             self._shown = [each for parts in together for each in broken(parts, self._width)]
+        if len(self._shown) != room > 1:
+            room -= 1  # an empty row above the keys, unless the text needs it
         self._scrolls = len(self._shown) > room
         self._top = max(0, min(self._top, len(self._shown) - room))
         last = min(len(self._shown), self._top + room)
@@ -108,9 +110,9 @@ class SectionsScreen(TextScreen):
         return placed if len(placed) == height else [row(), *placed]
 
 
-def page_screen(title: str, blocks: Sequence[Block]) -> SectionsScreen:
-    """A screen with a text."""
-    return SectionsScreen(title, partial(_text_sections, blocks))
+def page_screen(title: str, blocks: Sequence[Block], fewest: int = 1) -> SectionsScreen:
+    """A screen with a text, in ``fewest`` columns or more where there is room."""
+    return SectionsScreen(title, partial(_text_sections, blocks), fewest)
 
 
 def _text_sections(blocks: Sequence[Block], columns: int) -> list[list[Row]]:

@@ -80,6 +80,8 @@ class LessonContent:
     """Fixed characters, in place of a scene."""
     moves: LessonSceneView | PlaybackSceneView | None = None
     """The scene that is seen, if any."""
+    is_backdrop: bool = False
+    """Whether nothing moves in it: it is seen where the file leaves room for it."""
     moves_rows: int = 0
     """Rows that the scene has a use for; 0: as many as there are."""
     first_words: int = 0
@@ -168,6 +170,11 @@ class LessonPage(Container):
         self._offset = len(picture) if is_roomy else 0
         if is_roomy:  # a picture may be wider than what is left beside the words
             content, picture = replace(content, words=[*picture, *content.words], picture=()), []
+        # A file that is short stands below the scene, whole; a long one beside it.
+        short = len(content.file) + 2
+        is_short = has_work and short + LEAST_PICTURE <= room
+        if content.is_backdrop and not is_short:
+            content = replace(content, moves=None)
         self._content = content
         has_picture = content.moves is not None or bool(picture)
         is_beside = layout is not PageLayout.STACKED and (has_picture or has_work)
@@ -177,7 +184,9 @@ class LessonPage(Container):
         self.set_class(content.moves is None, "-still")
         self.query_one("#told").styles.width = content.words_width if is_beside else None
         # Where nothing moves the file has all columns beside the words.
-        self.set_class(self.size.width >= COLUMNS_WIDTH and content.moves is not None, "-columns")
+        is_columns = self.size.width >= COLUMNS_WIDTH and content.moves is not None and not is_short
+        self.set_class(is_columns, "-columns")
+        self._set_height(self._rows("work"), short if is_short and content.moves is not None else "1fr")
         self._rows("picture").show_all(picture)
         self._rows("picture").display = bool(picture)
         for scene in self._scenes:

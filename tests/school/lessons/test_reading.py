@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.reading import UnknownLesson, find_lesson, lesson_names, read_lesson
+from kit.school.lessons.reading import UnknownLesson, exercise_scene, find_lesson, lesson_names, read_lesson
 from kit.school.lessons.records import CommandKind, GraphChannel, GraphScene, Lesson, StepKind
 from kit.world.problems import WorldError
 from tests.school.lessons.conftest import LESSON, write_lesson
@@ -202,3 +202,15 @@ def test_a_mistake_in_a_graph_is_told(tmp_path: Path, old: str, new: str, said: 
     with pytest.raises(WorldError) as raised:
         read_lesson(write_lesson(tmp_path, LESSON.replace(PICTURE, GRAPH.replace(old, new))))
     assert said in str(raised.value)
+
+
+def test_the_world_in_which_an_exercise_is_checked_is_known() -> None:
+    found = {each.name: exercise_scene(each) for each in find_lesson("09-your-own-controller").exercises}
+    assert {name: scene and scene.map_name for name, scene in found.items()} == {
+        "circle": "simple",
+        "wanderer": "maze",
+        "wall_follower": "house",
+    }
+    in_case = [exercise_scene(each) for each in find_lesson("13-potential-fields").exercises]
+    assert "turn_a_to_b" in [each.case for each in in_case if each is not None]
+    assert all(exercise_scene(each) is None for each in find_lesson("20-q-learning").exercises)

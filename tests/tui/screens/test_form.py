@@ -162,10 +162,10 @@ def test_an_answer_that_is_too_long_is_said_and_not_lost(tmp_path: Path) -> None
         assert isinstance(screen, DialogueScreen)
         _field(screen).load_text("word " * 1000)
         await pilot.press("enter")
-        assert "Not saved" in rows(pilot)[-2]
+        assert "Not saved" in rows(pilot)[-3]
         await pilot.press("escape", "escape")
         assert pilot.app.screen is screen
-        assert "Not saved" in rows(pilot)[-2]
+        assert "Not saved" in rows(pilot)[-3]
 
     kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")
     assert not kept.is_answered("driving_words", SurveyPhase.AFTER)
@@ -175,7 +175,7 @@ def test_an_answer_that_cannot_be_kept_is_said(tmp_path: Path) -> None:
     async def act(pilot: Pilot[None], session: FormSession) -> None:
         session._journal.close()
         await pilot.press("3", "enter")
-        assert "Not saved" in rows(pilot)[-2]
+        assert "Not saved" in rows(pilot)[-3]
         assert "question 1 of" in rows(pilot)[0]
         assert any(row.startswith("> 3") for row in rows(pilot))
 

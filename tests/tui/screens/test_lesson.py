@@ -28,7 +28,7 @@ from kit.tui.widgets.program_editor import MAX_BYTES, ProgramEditor
 from kit.workspace import Workspace, open_workspace
 from tests.kit_content import kit_lesson
 from tests.tui.lesson_folder import STILL, TURNING, write_lessons, write_solutions
-from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
+from tests.tui.lesson_stage import ROBOT, Scene, rows, seen, stage, text, until
 from tests.tui.tape import painted
 
 COLOUR, CORNER = 4, 5
@@ -123,7 +123,7 @@ def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play
         await pilot.press("n")
         title = read_lesson(student.lesson).steps[0].title
         assert title in rows(pilot)[1], "what is said has a row of its own where it would cut the title"
-        assert "Predict first" in rows(pilot)[-2]
+        assert "Predict first" in rows(pilot)[-3]
         await pilot.resize_terminal(80, 24)
         await pilot.press("2")
         await seen(pilot, "finished")
@@ -501,6 +501,35 @@ def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size
     stage(student.screen, scene, size=size)
     stage(student.screen, below)
     stage(student.screen, small, size=(80, 14))
+
+
+@pytest.mark.long
+def test_a_large_terminal_shows_the_world_above_a_short_file_and_then_what_the_program_did(
+    student: Student,
+) -> None:
+    """Also of a check that failed; a still scene does not say that anything is shown again."""
+    (student.lesson / "corner" / "starter.py").write_text(TURNING)
+    student.goes_to(CORNER)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: any(each in text(pilot) for each in ROBOT), "the robot")
+        shown = rows(pilot)
+        robot = next(number for number, line in enumerate(shown) if any(each in line for each in ROBOT))
+        assert robot < next(number for number, line in enumerate(shown) if " 1 " in line)
+        assert "r restart" not in shown[-1]
+        await pilot.press("c")
+        await seen(pilot, "[no] It reaches the target")
+        await seen(pilot, "your run: r shows it again")
+        assert "[no] It reaches the target" in text(pilot)
+
+    async def small(pilot: Pilot[None]) -> None:
+        await pilot.press("c")
+        await seen(pilot, "[no] It reaches the target")
+        await pilot.pause(0.5)
+        assert not pilot.app.screen.query_one(LessonSceneView).display, "the words need the room"
+
+    stage(student.screen, scene, size=(200, 50))
+    stage(student.screen, small)
 
 
 def steps_row(pilot: Pilot[None]) -> int:

@@ -9,6 +9,7 @@ from textual.widgets import OptionList
 from kit.render.palettes import COLOR_SCHEMES
 from kit.render.roles import Role
 from kit.tui.app import KitApp
+from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.levels import LevelsScreen
@@ -54,6 +55,48 @@ def test_it_finds_puzzles_and_opens_those_without_a_clock(house: House, name: st
         await seen(pilot, "Mount as few" if opens else "Repair convoy.launch.py")
         await pilot.pause(0.5)
         assert type(pilot.app.screen) is (PuzzleScreen if opens else LevelsScreen)
+
+    house.play(scene)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("typed", "found"),
+    [
+        ("tag", "Two players"),
+        ("two players", "Two players"),
+        ("daily", "Daily"),
+        ("maze", "Daily"),
+        ("race", "Levels"),
+        ("league", "League"),
+        ("settings", "Key test"),
+        ("puzzles", "Levels"),
+        ("scores", "Quiz"),
+    ],
+)
+def test_it_finds_screens_by_the_words_that_people_type(house: House, typed: str, found: str) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        options = pilot.app.screen.query_one(OptionList)
+        await until(pilot, lambda: options.option_count > 50, "lessons, levels and maps")
+        await pilot.press(*typed)
+        await pilot.pause()
+        assert any(str(option.prompt)[2:].startswith(found) for option in options.options)
+
+    house.play(scene)
+
+
+@pytest.mark.long
+def test_it_opens_a_part_of_the_game(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        await pilot.press(*"leaderboard", "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LeaderboardScreen), "the leaderboard")
+        assert isinstance(pilot.app.screen_stack[-2], LevelsScreen)
 
     house.play(scene)
 

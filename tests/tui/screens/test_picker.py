@@ -8,7 +8,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.tui.screens.picker import LIST_WIDTH, NOTHING_FOUND, Picker, PickerItem
+from kit.tui.screens.picker import LIST_WIDTH, NOTHING_FOUND, WAY_ON, Picker, PickerItem
 from tests.tui.lesson_stage import rows, stage, text
 from tests.tui.screens.test_dialogs import LONG
 from tests.tui.screens.test_start import house as house  # the fixture
@@ -16,7 +16,7 @@ from tests.tui.screens.test_start import house as house  # the fixture
 CHOICES = (
     PickerItem("a", "alpha", "the first [one]"),
     PickerItem("b", "beta", LONG),
-    PickerItem("c", "gamma"),
+    PickerItem("c", "gamma", "", "colours settings"),
 )
 
 
@@ -53,6 +53,8 @@ def pick(*keys: str) -> tuple[str, str | None]:
         (["end", "home", "enter"], "a"),
         ([*"amm", "enter"], "c"),
         ([*"FIRST", "enter"], "a"),
+        ([*"settings", "enter"], "c"),
+        ([*"one first", "enter"], "a"),
         (["escape"], None),
     ],
 )
@@ -65,6 +67,7 @@ def test_nothing_is_chosen_where_nothing_is_left() -> None:
     shown, chosen = pick(*"zzz", "enter")
     assert chosen is None
     assert NOTHING_FOUND in shown
+    assert WAY_ON in shown
     assert NOTHING_FOUND not in pick(*"zzz", *["backspace"] * 3, "enter")[0]
 
 

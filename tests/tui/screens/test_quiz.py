@@ -15,8 +15,8 @@ from kit.school.quiz.quiz_dialogue import QuizDialogue, QuizStage
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
-from tests.kit_content import kit_bank
-from tests.tui.lesson_stage import rows, stage
+from tests.kit_content import kit_bank, kit_lesson
+from tests.tui.lesson_stage import rows, seen, stage
 
 BANK = kit_bank()
 Scene = Callable[[DialogueScreen, Pilot[None]], Awaitable[None]]
@@ -91,7 +91,7 @@ def test_not_sure_and_blank_are_told_too(progress: ProgressJournal) -> None:
         await pilot.press("0")
         assert "not counted as wrong" in flat(screen)
         await pilot.press("enter", "x")
-        assert "once more" in rows(screen)[-2]
+        assert "once more" in rows(screen)[-3]
         assert len(kept(progress)) == 1
         await pilot.press("x")
         assert "Left blank" in flat(screen)
@@ -152,7 +152,7 @@ def test_an_answer_that_cannot_be_kept_is_said(progress: ProgressJournal) -> Non
     async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         progress.close()
         await pilot.press("1", "1")
-        assert "Not saved" in rows(screen)[-2]
+        assert "Not saved" in rows(screen)[-3]
         assert quiz(screen).stage is QuizStage.CHOSEN
 
     play(scene, progress)
@@ -242,3 +242,31 @@ def test_the_map_of_topics_stands_beside_a_question_or_below_it_where_there_is_r
             assert f"1 of {count}" in flat(screen)
 
     play(scene, progress, size=size)
+
+
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)], ids=str)
+def test_a_large_screen_shows_the_lessons_scene_and_then_the_step_that_teaches_the_answer(
+    progress: ProgressJournal, size: tuple[int, int]
+) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        item = quiz(screen).item
+        assert item is not None
+        await seen(pilot, "Nothing is learned yet.")  # below the floors of the lesson's learners
+        folder, _, number = item.lesson_to_repeat.partition("/")
+        step = kit_lesson(folder).steps[int(number) - 1]
+        assert step.title not in flat(screen)
+        await pilot.press("1", "4")
+        await seen(pilot, step.title)
+
+    play(scene, progress, lesson="20-q-learning", size=size)
+
+
+def test_the_end_lists_what_was_answered_with_the_right_answers(progress: ProgressJournal) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        asked = []
+        while (item := quiz(screen).item) is not None and not quiz(screen).is_over:
+            asked.append(item)
+            await pilot.press("0", "n")
+        assert all(each.options[each.right_option].text[:20] in flat(screen) for each in asked)
+
+    play(scene, progress, lesson="20-q-learning", size=(200, 50))

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
+
 from textual.pilot import Pilot
 
 from kit.document.blocks import Picture, Text
 from kit.document.rows import in_columns, row, row_text
+from kit.tui.app import KitApp
 from kit.tui.screens.text_screen import TextScreen, page_screen
-from tests.tui.lesson_stage import rows, seen, stage
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
+from tests.tui.lesson_stage import rows, seen, stage, text, until
 from tests.tui.screens.test_start import house as house  # the fixture
 
 
@@ -19,7 +23,7 @@ def test_a_long_row_goes_on_below_and_is_counted() -> None:
         assert "".join(line.strip() for line in rows(pilot)[1:6]).startswith(long)
         await pilot.press("end")
         await seen(pilot, "the last")
-        assert "lines 5 to 26 of 26" in rows(pilot)[0]
+        assert "lines 6 to 26 of 26" in rows(pilot)[0]
         assert "scroll" in rows(pilot)[-1]
         await pilot.resize_terminal(80, 40)
         await seen(pilot, "/folder0")
@@ -58,3 +62,29 @@ def test_no_column_is_much_longer_than_another_and_none_is_too_narrow() -> None:
         assert max(len(each.split()) for each in shown) == columns
         assert sum(len(each.split()) for each in shown) == sum(lengths)
         assert len(shown) < sum(lengths) / columns + max(lengths)
+
+
+def test_nothing_stands_beside_the_message_of_a_terminal_that_is_too_small() -> None:
+    async def play() -> None:
+        app = KitApp(decide_terminal({"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions()))
+        async with app.run_test(size=(80, 24), notifications=True) as pilot:
+            await app.push_screen(TextScreen("Full", [row("#" * 200)] * 50))
+            for size in ((40, 12), (20, 5), (30, 8)):
+                await pilot.resize_terminal(*size)
+                await seen(pilot, f"{size[0]}x{size[1]} is too")
+                await until(pilot, lambda: "60x18." in text(pilot), "the whole message")
+                told = [line for line in rows(pilot) if "too" in line or "60x18." in line]
+                assert told
+                assert not any("#" in line for line in told)
+
+    asyncio.run(play())
+
+
+def test_an_empty_row_is_between_a_long_text_and_the_keys() -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        *_, last, blank, keys = rows(pilot)
+        assert last
+        assert not blank
+        assert "Esc back" in keys
+
+    stage(lambda theme: TextScreen("Full", [row("text")] * 50), scene)
