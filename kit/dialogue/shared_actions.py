@@ -45,7 +45,7 @@ _SHARED: Final = (
     letter("help", "?", "help", "show this page", name="question_mark"),
     ScreenAction("palette", "Ctrl-P", "find", "list all commands; type to find one", (("ctrl+p", "app.palette"),), "^P"),
     ScreenAction("glossary", ",", "glossary", "open the glossary, which explains the terms", (("comma", "app.glossary"),)),
-    letter("restart", "r", "restart", "start the scene, the drive or the world again"),
+    letter("restart", "r", "restart", "start the scene, drive, puzzle or world again"),
     letter("check", "c", "check", "check your work; saving its file checks it too"),
     letter("hint", "h", "hint", "show the next hint for a criterion you missed"),
     letter("solution", "s", "solution", "show the reference solution, once yours passes"),

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 ROWS_AROUND: Final = 3
 """Of the screen: the heading, and the line of keys with an empty row above it."""
+BOARD_KEYS: Final = ("move_cursor", "mark_cell", "switch_robot", "undo")
+"""Actions whose meaning each board says itself."""
 TRIES: Final = 30
 """Columns of the list of checks beside a board that its text stands above."""
 
@@ -198,4 +200,7 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         super().on_unmount()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A puzzle", self.screen_actions, without=self._unavailable_actions()))
+        """What the keys of the board do is told as on the page."""
+        without = [*self._unavailable_actions(), *BOARD_KEYS]
+        note = ("board", self._board.keys)
+        self.app.push_screen(HelpDialog("A puzzle", self.screen_actions, (note,), without=without))
