@@ -23,6 +23,7 @@ from kit.school.game.medal import Medal
 from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.shared_answers import share_answer
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
+from kit.tui.flourish import Flourish
 from kit.tui.rows.challenge_rows import answers_needed_rows, beside_others, challenge_page, judged
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.lesson_rows import checking
@@ -89,6 +90,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._result: list[Row] = []
         self._won = Medal.NONE
         """The medal that was just won, which is drawn where there is room."""
+        self._flourish = Flourish(theme, self._renew)
         self._bins: tuple[HistogramBin, ...] = ()
         """How many players of this machine needed how much."""
         self._doing = ""
@@ -146,6 +148,12 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._rows, self._width = tuple(self._page(self.size.width)), 0
         self._show()
 
+    def on_key(self, event: events.Key) -> None:
+        """Any key ends the flourish of a medal."""
+        if self._flourish.number:
+            self._flourish.end()
+            self._renew()
+
     # What is shown
 
     def _show(self) -> None:
@@ -165,7 +173,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     @property
     def _drawing(self) -> list[Row]:
-        return medal_drawing(self._won, medal_size(self.size.height))
+        return medal_drawing(self._won, medal_size(self.size.height), self._flourish.number)
 
     def _unavailable_actions(self) -> list[str]:
         return [
@@ -206,6 +214,8 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             judgement, previous = await to_thread(self._judge, answer)
             self._tell(judgement, previous)
             self._won = judgement.medal if judgement.medal > previous else Medal.NONE
+            if self._won:
+                self._flourish.begin(self)
         except (AnswerError, WorldError, ProgressError, OSError) as error:
             self._won = Medal.NONE
             self._tell_problem(str(error))

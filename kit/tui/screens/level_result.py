@@ -35,12 +35,13 @@ from kit.school.game.race import (
 )
 from kit.school.game.starts import film_scenario
 from kit.school.lessons.shell_lines import shell_path
+from kit.tui.flourish import Flourish
 from kit.tui.input.drive_keys import drive_key
 from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.chart_rows import CHART_ROWS
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
-from kit.tui.rows.medal_rows import SMALL, SPARKS, drawn_columns, medal_drawing, medal_size
+from kit.tui.rows.medal_rows import SMALL, drawn_columns, medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
@@ -76,8 +77,6 @@ LADDER_COLUMNS: Final = 42
 """Columns of the ladder beside the next level."""
 NEXT_ROWS: Final = 7
 """Of the next level's picture."""
-SPARK_INTERVAL: Final = 0.1
-"""Between two pictures of the flourish [s]."""
 SPEED_INTERVAL: Final = 0.1
 """Between two speeds of a chart [s]."""
 QUICKER, SLOWER = 0.005, 0.03
@@ -151,7 +150,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         """What all players needed, once that is known."""
         self._shown = 0
         self._note: Row = ()
-        self._spark = SPARKS if self._has_new_medal and not theme.terminal.reduce_motion.value else 0
+        self._flourish = Flourish(theme, self._show_flourish)
         self._world = WorldView(lambda: theme.encoder, theme.palette)
 
     @property
@@ -181,8 +180,8 @@ class DriveResultScreen(ModalScreen[Wish]):
         if os.environ.get(BELL_VARIABLE) == "1" and self._has_new_medal:
             self.app.bell()
         self._timer = self.set_interval(REVEAL_INTERVAL, self._reveal)
-        if self._spark:
-            self._sparks = self.set_interval(SPARK_INTERVAL, self._twinkle)
+        if self._has_new_medal:
+            self._flourish.begin(self)
         self._draw_map()
 
     @work(exclusive=True, group="map")
@@ -204,18 +203,16 @@ class DriveResultScreen(ModalScreen[Wish]):
             self._shown = len(self._revealed)
         self._show()
 
-    def _twinkle(self) -> None:
-        self._spark -= 1
-        if self._spark <= 0:
-            self._sparks.stop()
+    def _show_flourish(self) -> None:
+        if not self._flourish.number:
             self._place_map()
         self._show()
 
     def on_key(self, event: events.Key) -> None:
         """Any key ends the flourish, but one that may still be held from driving."""
-        if self._spark and drive_key(event.key) is None:
-            self._spark = 1
-            self._twinkle()
+        if self._flourish.number and drive_key(event.key) is None:
+            self._flourish.end()
+            self._show_flourish()
 
     def _reveal(self) -> None:
         self._shown += max(1, len(self._revealed) // MOST_REVEALS)
@@ -238,14 +235,16 @@ class DriveResultScreen(ModalScreen[Wish]):
         self.set_class(is_high, "-high")
         self.set_class(NARROW <= width < WIDE and not is_high, "-beside")
         is_beside = self.has_class("-beside")
-        self._world.visible = not (is_beside and self._spark and not self._above)
+        self._world.visible = not (is_beside and self._flourish.number and not self._above)
         self._world.styles.margin = (len(self._fixed) + len(self._above) if is_beside else 0, 0, 0, 0)
         self._world.styles.height = len(self._beside_map) if is_beside else "1fr"
 
     @property
     def _medal(self) -> list[Row]:
         """The medal as a drawing, where there is room for it."""
-        return medal_drawing(self._result.record.medal, medal_size(self.app.size.height), self._spark)
+        return medal_drawing(
+            self._result.record.medal, medal_size(self.app.size.height), self._flourish.number
+        )
 
     @property
     def _above(self) -> list[Row]:
@@ -354,8 +353,8 @@ class DriveResultScreen(ModalScreen[Wish]):
         size = medal_size(self.app.size.height)
         if medal := self._medal if not self._above else []:
             rows = [*side_by_side(medal, rows[: len(medal)], drawn_columns(size)), *rows[len(medal) :]]
-        elif self._spark and self.has_class("-beside") and not size:
-            drawn = medal_drawing(self._result.record.medal, SMALL, self._spark)
+        elif self._flourish.number and self.has_class("-beside") and not size:
+            drawn = medal_drawing(self._result.record.medal, SMALL, self._flourish.number)
             rows = [*side_by_side(rows[: len(drawn)], drawn, LEFT), *rows[len(drawn) :]]
         rows = [*self._fixed, *self._above, *rows, self._note]
         for text in self.query(TextRows):  # none where the kit is left meanwhile

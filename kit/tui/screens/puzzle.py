@@ -24,6 +24,7 @@ from kit.tui.rows.challenge_rows import (
     tries_rows,
 )
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.medal_rows import SMALL, medal_drawing, medal_size
 from kit.tui.screens.challenge import WIDE, ChallengeScreen
 from kit.tui.screens.dialogs import HelpDialog
 from kit.workspace import Workspace, write_atomically
@@ -107,9 +108,14 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             self.size.height - ROWS_AROUND,
             self._theme.graph_glyphs,
             self._checked,
-            (needed, self._drawing if is_wide else []),
+            (needed, self._drawing),
             tries,
         )
+
+    @property
+    def _drawing(self) -> list[Row]:
+        """Beside the board, however small the screen."""
+        return medal_drawing(self._won, medal_size(self.size.height) or SMALL, self._flourish.number)
 
     def _result_rows(self) -> list[Row]:
         """None: the page says it, so that no row changes its place."""

@@ -120,7 +120,13 @@ def test_a_puzzle_is_played_by_keys_and_kept_in_its_file(journal: ProgressJourna
         await pilot.press("c")
         await seen(pilot, "gold (new)")
         assert moves in file.read_text()
+        screen = pilot.app.screen
+        assert isinstance(screen, PuzzleScreen)
+        await seen(pilot, "▀██████████▀")  # the medal beside the board
+        assert "█ S   .   ." in "\n".join(rows(pilot)), "which keeps its size"
         await pilot.press("u")
+        assert screen._flourish.number == 0
+        assert "▀██████████▀" not in "\n".join(rows(pilot))
         await pilot.press("escape")
         await until(pilot, lambda: pilot.app.screen is levels, "the list")
         await until(pilot, lambda: f"\n{moves[:-1]}\n" in file.read_text(), "the file to be written")

@@ -31,6 +31,7 @@ from kit.school.game.player_progress import ExtraRule, offered_rules
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
+from kit.tui import flourish
 from kit.tui.app import KitApp
 from kit.tui.screens import level_result
 from kit.tui.screens import levels as levels_module
@@ -682,7 +683,7 @@ def test_a_new_medal_has_a_flourish_that_any_key_ends_unless_motion_is_reduced(
     still: bool,
     size: tuple[int, int],
 ) -> None:
-    monkeypatch.setattr(level_result, "SPARK_INTERVAL", 3600.0)
+    monkeypatch.setattr(flourish, "SPARK_INTERVAL", 3600.0)
     workspace = prepare_workspace(tmp_path / "desk")
     result = result_of(workspace, progress)
     won = replace(result, record=replace(result.record, medal=Medal.BRONZE))
@@ -693,16 +694,16 @@ def test_a_new_medal_has_a_flourish_that_any_key_ends_unless_motion_is_reduced(
             screen._theme, terminal=replace(facts, reduce_motion=replace(facts.reduce_motion, value=still))
         )
         again = replace(won, record=replace(won.record, previous_medal=Medal.BRONZE))
-        assert DriveResultScreen(theme, again, workspace)._spark == 0, "only once"
+        await screen.app.push_screen(repeated := DriveResultScreen(theme, again, workspace))
+        assert repeated._flourish.number == 0, "only once"
         dialog = DriveResultScreen(theme, won, workspace)
-        assert (dialog._spark > 0) is not still
         await screen.app.push_screen(dialog)
         await pilot.press("w")  # still held from driving
-        assert (dialog._spark > 0) is not still
+        assert (dialog._flourish.number > 0) is not still
         assert dialog._world.visible is (still or size[0] > 80)
         assert ("▀██████████▀" in flat(screen.app)) is (not still or size[0] > 80), "the medal's disc"
         await pilot.press("x")
-        assert dialog._spark == 0
+        assert dialog._flourish.number == 0
         assert dialog._world.visible
 
     play(scene, progress, tmp_path / "desk", size)
