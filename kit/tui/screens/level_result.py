@@ -193,11 +193,10 @@ class DriveResultScreen(ModalScreen[Wish]):
             size = WIDTH - LADDER_COLUMNS - MARGIN, NEXT_ROWS
             self._next_picture = await to_thread(picture_of, result.record.following, *size, glyphs)
             self._show()
-        if not result.finish.reached:
-            return
-        seconds = await to_thread(seconds_needed, result.level, result.driver)
         was_all_shown = self._shown >= len(self._revealed)
-        self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds), WIDTH)
+        if result.finish.reached:
+            seconds = await to_thread(seconds_needed, result.level, result.driver)
+            self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds), WIDTH)
         self._leads = await to_thread(leads_over_reference, result)
         if was_all_shown:
             self._shown = len(self._revealed)
