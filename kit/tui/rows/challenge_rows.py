@@ -54,6 +54,8 @@ LEAST_TOLD: Final = 34
 NAME_COLUMNS: Final = 14
 LIST_COLUMNS: Final = 56
 """Of the list, where a picture stands beside it."""
+NARROW_LIST: Final = 45
+"""Of the list, where only a small picture may stand beside it."""
 ROOM_FOR_PICTURE: Final = LIST_COLUMNS + 50
 
 
@@ -112,6 +114,13 @@ def challenge_picture(challenge: Challenge, width: int, height: int, glyphs: Gly
         scale, _ = largest_drawing(board, width, height)
         shown = board.drawing(width, height, glyphs) or board.rows(scale)
     return [part for each in shown for part in _wrap_row(each, width)][:height]
+
+
+def small_picture(challenge: Challenge, width: int) -> list[Row]:
+    """The board of a challenge as it is drawn, below an empty row; nothing where there is none, or it is wider."""
+    board = challenge.task.board("")
+    drawn = [] if board is None else _table_and_rest(board.rows())[0]
+    return [row(), *drawn] if max(map(row_width, drawn), default=width + 1) <= width else []
 
 
 def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[Row]:

@@ -255,6 +255,7 @@ class LevelsScreen(RowsScreen[None]):
         self.set_class(challenge is not None, "-challenge")
         listed, about = self._level_rows() if challenge is None else self._challenge_rows(challenge)
         self._rows("map").show(listed)
+        self._rows("about").styles.height = self._rows_of_about
         self._rows("about").show([*about[: ABOUT_ROWS - 1], self._doing_row()] if self._doing else about)
         labels = {} if challenge is not None else {"open": "drive"}
         if self.size.width < ROOM_FOR_WORDS:
@@ -268,6 +269,19 @@ class LevelsScreen(RowsScreen[None]):
         if self.chosen_challenge is not None:
             return DRIVE_ACTIONS
         return () if self.chosen.best_times else ("replay",)
+
+    @property
+    def _rows_of_about(self) -> int:
+        """As many as any of the challenges takes, so that the list stays where it is."""
+        if self.chosen_challenge is None:
+            return ABOUT_ROWS
+        width = self.size.width
+        return max(len(challenge_rows.about_challenge(each, Medal.NONE, width)) for each in self._challenges)
+
+    @property
+    def _middle_rows(self) -> int:
+        """Rows between the heading and what is said of what is chosen."""
+        return self.size.height - ROWS_AROUND - self._rows_of_about
 
     def _world_heading(self, best: Sequence[Medal]) -> list[Row]:
         """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
@@ -326,7 +340,7 @@ class LevelsScreen(RowsScreen[None]):
     def _rows_below_levels(self) -> int:
         """Rows of the list below the levels of the chosen world."""
         levels = self._in_world(self.chosen.level.world)
-        return self._rows("map").size.height - ROWS_ABOVE_LEVELS - len(levels) - 1
+        return self._middle_rows - ROWS_ABOVE_LEVELS - len(levels) - 1
 
     def _challenge_rows(self, chosen: Challenge) -> tuple[list[Row], list[Row]]:
         """The list of challenges, beside it the chosen one's picture where there is room, and what is said of it."""
@@ -343,19 +357,22 @@ class LevelsScreen(RowsScreen[None]):
             self._challenges, medals, chosen.id, height if is_beside else self._list_room, column - 1
         )
         if has_picture:
-            height = height if is_beside else self._rows("map").size.height - len(heading)
+            height = height if is_beside else self._middle_rows - len(heading)
             picture = challenge_rows.challenge_picture(
                 chosen, width - column - 1, height, self._theme.graph_glyphs
             )
             below = [row(), *about] if is_beside else []
             listed = side_by_side([*listed, *below], picture, column)
+        else:
+            column = challenge_rows.NARROW_LIST
+            listed = side_by_side(listed, challenge_rows.small_picture(chosen, width - column), column)
         listed = [*heading, *listed]
         return listed, challenge_rows.about_challenge(chosen, medal, width)
 
     @property
     def _list_room(self) -> int:
         """Rows for the list of levels or challenges."""
-        return max(1, self._rows("map").size.height - ROWS_ABOVE_LEVELS)
+        return max(1, self._middle_rows - ROWS_ABOVE_LEVELS)
 
     @property
     def _top_level(self) -> int:
