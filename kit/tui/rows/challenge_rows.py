@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -13,7 +14,7 @@ from kit.layers.drawing.spans import GlyphStyle
 from kit.plain_text import counted, wrap
 from kit.school.game.board import Board
 from kit.school.game.challenge import Challenge
-from kit.school.game.challenges import BEGUN
+from kit.school.game.challenges import BEGUN, all_challenges
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.game.players_histogram import HistogramBin
@@ -103,6 +104,12 @@ def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]
             (f"   lesson {lesson_number(challenge.lesson)} teaches it", "dim"),
         ),
     ]
+
+
+@cache
+def most_rows_about(width: int) -> int:
+    """As many rows as that of any challenge takes, so that what is above keeps its place."""
+    return max(len(about_challenge(each, Medal.NONE, width)) for each in all_challenges())
 
 
 def challenge_picture(challenge: Challenge, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:

@@ -22,6 +22,7 @@ HOST: Final = 0
 """The number of the player whose process runs the world."""
 NOBODY: Final = "nobody yet"
 PLAYER_STYLES: Final = ("code", "bold")
+"""Of the players' names: the first one's is that of the first robot."""
 LEAST_WIDTH: Final = 16
 """Columns of the players' card."""
 RULES: Final = {
@@ -37,9 +38,9 @@ def shared_heading(level: str, mode: SharedMode, state: SharedGameState, me: int
     left = row(
         (level, "bold"),
         f"  {mode.value}  ",
-        (_name_of(state, first, me), PLAYER_STYLES[0]),
+        (_name_of(state, first, me), PLAYER_STYLES[first]),
         " against ",
-        _name_of(state, 1 - first, me),
+        (_name_of(state, 1 - first, me), PLAYER_STYLES[1 - first]),
     )
     seconds = state.seconds
     if mode is SharedMode.TAG and state.phase is SharedPhase.RUNNING:
@@ -95,7 +96,7 @@ def players_card(mode: SharedMode, state: SharedGameState, me: int | None, width
         rows += [
             row(
                 (f"{number + 1} ", "dim"),
-                (_name_of(state, number, me), PLAYER_STYLES[number == me]),
+                (_name_of(state, number, me), PLAYER_STYLES[number]),
                 ("  catches" if catches else "", "warn"),
             ),
             row(f"  {_score_text(mode, state, number)}"),

@@ -272,11 +272,8 @@ class LevelsScreen(RowsScreen[None]):
 
     @property
     def _rows_of_about(self) -> int:
-        """As many as any of the challenges takes, so that the list stays where it is."""
-        if self.chosen_challenge is None:
-            return ABOUT_ROWS
-        width = self.size.width
-        return max(len(challenge_rows.about_challenge(each, Medal.NONE, width)) for each in self._challenges)
+        is_challenge = self.chosen_challenge is not None
+        return challenge_rows.most_rows_about(self.size.width) if is_challenge else ABOUT_ROWS
 
     @property
     def _middle_rows(self) -> int:

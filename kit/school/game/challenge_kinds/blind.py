@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import accumulate
 from typing import TypeAlias
 
 from kit.breadth_first import reached_from
@@ -129,9 +130,11 @@ class BlindBoard(MovesBoard):
         return [ends_here, self.moves_made(width)]
 
     def curve(self) -> tuple[str, Sequence[float]]:
-        sizes = [
-            len(possible_cells(self._blind, self.moves[:count])) for count in range(1, len(self.moves) + 1)
-        ]
+        anywhere: Belief = frozenset(free_cells(self._blind.grid))
+        beliefs = accumulate(
+            self.moves, lambda belief, move: _move_belief(self._blind, belief, move), initial=anywhere
+        )
+        sizes = [len(belief) for belief in beliefs][1:]
         return "places where it may be after each move", sizes
 
 
