@@ -23,13 +23,12 @@ from kit.learning.tasks.disturbances import UniformRange
 from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.rewards import REWARDS
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.algorithm_settings import LEARNING_RATE
 from kit.learning.training.algorithms import ALGORITHMS, IMITATION_ALGORITHMS, algorithms_for, find_algorithm
 from kit.learning.training.demonstrations import is_recording
 from kit.learning.training.events import EventReader, TrainingEnded, TrainingProgress
 from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.run_check import check_run_config
-from kit.learning.training.run_config import MAX_WORLDS, PresetName, RunConfig, RunError, format_setting
+from kit.learning.training.run_config import MAX_WORLDS, PresetName, RunConfig, RunError
 from kit.learning.training.run_folders import create_run, find_run, left_out, list_runs
 from kit.learning.training.run_text import format_event
 from kit.learning.training.run_upkeep import delete_run, disk_bytes, read_overviews, rename_run, runs_blocks
@@ -404,11 +403,8 @@ def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
     found = resolve_preset(config)
     lines = [f"Settings of {algo} on {task}, preset {preset}:"]
     for name in found.setting_types(algorithm):
-        number = found.learning_rate if name == LEARNING_RATE else getattr(found.settings, name)
         own = f"{algorithm.library_defaults().get(name)} (the library's)"
-        if isinstance(number, int | float):
-            number = format_setting(number)
-        lines.append(f"  {name:24} {own if number is None else number}")
+        lines.append(f"  {name:24} {found.number_of(name) or own}")
     return lines
 
 

@@ -18,7 +18,7 @@ from kit.school.lessons.glossary import glossary_action
 from kit.school.lessons.records import LessonScene
 from kit.school.progress import ProgressError
 from kit.school.quiz.items import QuizTopic
-from kit.school.survey import AnswerShape, AnswerValue, SurveyQuestion
+from kit.school.survey import AnswerShape, AnswerValue, SurveyPhase, SurveyQuestion
 
 KEPT: Final = (
     ("what is kept", "each answer, as soon as you go on, go back or leave"),
@@ -138,9 +138,18 @@ class FormDialogue(Dialogue):
             for number, each in enumerate(session.questions[first:], first + 1)
             for block in self._entry_of(number, each)
         ]
-        return Panel("your answers", tuple(kept)), Panel(
-            f"the questions {PHASE_LABELS[session.phase]}", tuple(entries)
-        )
+        shown = [
+            Panel("your answers", tuple(kept)),
+            Panel(f"the questions {PHASE_LABELS[session.phase]}", tuple(entries)),
+        ]
+        phases = list(SurveyPhase)
+        for later in phases[phases.index(session.phase) + 1 :]:
+            asked = dict.fromkeys(
+                each.group_text or each.text for each in session.form.questions_in_phase(later)
+            )
+            told = (Text(each, Tone.DIM, lead="-", hang=2, is_tight=True) for each in asked)
+            shown.append(Panel(f"asked {PHASE_LABELS[later]}", tuple(told)))
+        return shown
 
     def _entry_of(self, number: int, question: SurveyQuestion) -> tuple[Block, ...]:
         """A question in the list of all, and below it what was answered."""

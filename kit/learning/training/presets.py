@@ -35,7 +35,7 @@ from kit.learning.training.algorithm_settings import (
     TabularParams,
 )
 from kit.learning.training.algorithms import Algorithm
-from kit.learning.training.run_config import PresetName, RunError
+from kit.learning.training.run_config import PresetName, RunError, format_setting
 from kit.learning.training.stopping_rules import StoppingRule, TrainUntilGoal, TrainUntilSure
 from kit.plain_text import quoted, suggestion
 
@@ -94,6 +94,17 @@ class Preset:
         if self.learning_rate is not None:
             found[LEARNING_RATE] = LinearSchedule
         return found
+
+    def number_of(self, name: str) -> str | None:
+        """What the preset sets for one of ``setting_types``, as it is written; None: nothing."""
+        number = self.learning_rate if name == LEARNING_RATE else getattr(self.settings, name)
+        return (
+            format_setting(number)
+            if isinstance(number, int | float)
+            else None
+            if number is None
+            else str(number)
+        )
 
     def check_size(self, inputs: int) -> None:
         """Raises RunError where the numbers that a learner holds, of observations of so many ``inputs``, would take more than any

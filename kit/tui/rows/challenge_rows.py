@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Final
 
+from kit.dialogue.dialogue import Panel
+from kit.document.blocks import Text
 from kit.document.rows import Row, at_both_edges, broken, lines_shown, row, row_text, row_width, side_by_side
 from kit.layers.drawing.spans import GlyphStyle
 from kit.plain_text import counted, wrap
 from kit.school.game.board import Board
-from kit.school.game.challenge import Challenge
+from kit.school.game.challenge import AnswerError, Challenge
 from kit.school.game.challenges import BEGUN, all_challenges
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.game.players_histogram import HistogramBin
-from kit.school.lessons.reading import lesson_number
+from kit.school.lessons.reading import find_lesson, lesson_number
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressEvent
 from kit.tui.rows.chart_rows import CHART_ROWS, stretched_chart
@@ -26,7 +29,9 @@ from kit.tui.rows.drive_end_rows import needed_rows
 from kit.tui.rows.level_rows import TITLE_WIDTH
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
+from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.rows.progress_marks import share_bar
+from kit.world.problems import WorldError
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
 HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"
@@ -110,6 +115,50 @@ def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]
 def most_rows_about(width: int) -> int:
     """As many rows as that of any challenge takes, so that what is above keeps its place."""
     return max(len(about_challenge(each, Medal.NONE, width)) for each in all_challenges())
+
+
+def challenge_standing(challenge: Challenge, checks: Sequence[ProgressEvent], width: int) -> list[Row]:
+    """The keys that solve a challenge on the screen and what each medal asks for, as far as they are known; the checks so far;
+    the lesson that teaches it. ``checks``: of it, the oldest first."""
+    board, rows = challenge.task.board(""), list[Row]()
+    if board is not None:
+        rows += [row(), *_wrap_with_lead("keys  ", board.keys, width, "dim")]
+        with suppress(AnswerError):  # which an empty answer is to some
+            rows += _rungs_rows(board.judgement().comparison)
+    tries = tries_rows(checks, width)
+    return [*rows, *([row(), *tries] if tries else []), *_lesson_rows(challenge.lesson, width)]
+
+
+@cache
+def _lesson_rows(name: str, width: int) -> tuple[Row, ...]:
+    """What the lesson that teaches a challenge is about; nothing where it cannot be read, which is told where it is opened."""
+    try:
+        lesson = find_lesson(name)
+    except (WorldError, LookupError, OSError):
+        return ()
+    about = [Text(lesson.summary), *(Text(each, lead="-", hang=2, is_tight=True) for each in lesson.outcomes)]
+    return tuple(
+        panel_rows(
+            [Panel(f"lesson {lesson.number}, {lesson.title}", tuple(about))], width, len(about) * LEAST_TEXT
+        )
+    )
+
+
+def _rungs_rows(comparison: AnswerComparison | None) -> list[Row]:
+    """What each medal asks for, the highest first."""
+    if comparison is None:
+        return []
+    bound = "at least" if comparison.more_is_better else "at most"
+    medals = [
+        row(
+            (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]),
+            f"{medal.title:<{NAME_COLUMNS}} ",
+            (f"{bound} ", "dim"),
+            _rung_text(comparison, figure),
+        )
+        for medal, figure in reversed(comparison.rungs)
+    ]
+    return [row(), *medals]
 
 
 def challenge_picture(challenge: Challenge, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:
@@ -369,8 +418,13 @@ def next_medal(judgement: Judgement) -> str:
     if comparison is None or comparison.medal is not judgement.medal or comparison.next_rung is None:
         return ""
     medal, figure = comparison.next_rung
+    return f"   next {medal.title} at {_rung_text(comparison, figure)}"
+
+
+def _rung_text(comparison: AnswerComparison, figure: float) -> str:
+    """What a medal asks for, rounded so that it earns the medal."""
     hundredths = math.ceil(figure * 100.0) if comparison.more_is_better else math.floor(figure * 100.0)
-    return f"   next {medal.title} at {_number_text(hundredths / 100.0)} {comparison.unit}"
+    return f"{_number_text(hundredths / 100.0)} {comparison.unit}"
 
 
 def judged(judgement: Judgement, previous: Medal, following: str | None, beside: Sequence[Row]) -> list[Row]:

@@ -179,7 +179,8 @@ class DialogueScreen(RowsScreen[None]):
         body, self._top = window(whole, self._top, room - picture)
         body = centred(body, self.room.width, room, self._whole, is_at_top=self._has_panels)
         if not self._has_panels:
-            body += self._panels_below(room - len(body))
+            # An empty row is above a remark that stands there always.
+            body += self._panels_below(room - len(body) - (self.dialogue.note is not None))
         height = len(body) if self._field is not None and self._field.display else "1fr"
         if height != self._body_height:  # setting a style lays out and paints the whole screen
             self._body_height = self._rows("body").styles.height = height

@@ -16,7 +16,7 @@ from textual.widgets import Input
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction, digits, letter
-from kit.document.rows import Row, at_both_edges, row, window
+from kit.document.rows import Row, at_both_edges, in_columns, row, window
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
 from kit.layers.drawing.graph import MAX_ENTITIES_IN_PICTURE
 from kit.layers.examples import EXAMPLES
@@ -27,6 +27,7 @@ from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.layer_rows import layer_grid, picture, words_width
+from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.layer_case_editor import CaseEditor
 from kit.tui.screens.picker import Picker, PickerItem
@@ -192,13 +193,28 @@ class LayersScreen(RowsScreen[None]):
         if not grid or room < LEAST_WORDS:
             room, grid = rows, []
         words, self._top = window([row(line) for line in step.lines], self._top, room)
-        space = [row() for _ in range(rows - len(words) - len(grid))]
-        self._rows("words").show([*words, *space, *grid])
+        left = rows - len(words) - len(grid)
+        asked = self._asked_rows(self._words_width - 1, left) if grid and step.part != "case" else []
+        space = [row() for _ in range(left - len(asked))]
+        self._rows("words").show([*words, *space, *asked, *grid])
         self._rows("heading").show([self._heading(step)])
         self._rows("remark").show([self._remark])
         self._rows("keys").show(
             [footer(self.screen_actions, self.size.width, labels={"choose_map": "cases"})]
         )
+
+    def _asked_rows(self, width: int, room: int) -> list[Row]:
+        """What is asked, above the grid and as many rows on each page, so that it stays where it is; nothing where it has no room
+        on this one."""
+        case, columns = self._steps[0], width // 2
+        placed = in_columns(
+            lambda column: [[row(line)] for line in self._case_lines(column - 1)], width, 1, columns
+        )
+        rows = [ruled_title(case.title.lower(), width), *placed, row()]
+        return rows if len(rows) < room else []
+
+    def _case_lines(self, width: int) -> tuple[str, ...]:
+        return case_page(self._asked.case, width).lines
 
     def _heading(self, step: Step) -> Row:
         number = PARTS.index(step.part) + 1

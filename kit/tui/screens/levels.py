@@ -22,7 +22,7 @@ from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
 from kit.school.game.challenge import Challenge
-from kit.school.game.challenges import all_challenges, challenge_medals, starts_clock
+from kit.school.game.challenges import all_challenges, challenge_events, challenge_medals, starts_clock
 from kit.school.game.daily import DAILY_PREFIX, daily_level, streak, today
 from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts, load_unfinished
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
@@ -359,6 +359,10 @@ class LevelsScreen(RowsScreen[None]):
                 chosen, width - column - 1, height, self._theme.graph_glyphs
             )
             below = [row(), *about] if is_beside else []
+            if is_beside:
+                room = height - len(listed) - len(below)
+                checks = challenge_events(self._progress, chosen)
+                below += challenge_rows.challenge_standing(chosen, checks, column - 1)[:room]
             listed = side_by_side([*listed, *below], picture, column)
         else:
             column = challenge_rows.NARROW_LIST

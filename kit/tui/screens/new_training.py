@@ -16,9 +16,12 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 
 from kit.dialogue.actions import ScreenActions
+from kit.dialogue.dialogue import Panel
 from kit.dialogue.screen_action import ScreenAction
-from kit.document.rows import at_both_edges, lines_shown, row
+from kit.document.blocks import Block, labelled_table
+from kit.document.rows import MARGIN, at_both_edges, lines_shown, row
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.rows.setting_rows import settings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
@@ -36,6 +39,8 @@ WIDE: Final = 110
 """Columns from which on the task stands beside the settings."""
 LIST_WIDTH: Final = 60
 """Columns of the settings, then."""
+FIRST_TASK: Final = "turn"
+"""The task that is offered first."""
 ALL: Final = "all"
 OWN_REWARD: Final = "the task's own"
 PRESETS: Final[Mapping[PresetName, str]] = {
@@ -70,7 +75,7 @@ TEST_EPISODES: Final = 200
 class TrainingChoices:
     """What has been chosen so far."""
 
-    task: str = "turn"
+    task: str = FIRST_TASK
     """A name, or the path of a file."""
     cases: tuple[str, ...] = ()
     """None: all."""
@@ -135,11 +140,15 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
     NewTrainingScreen.-wide TaskPreview {{ display: block; width: 1fr; }}
     """
 
-    def __init__(self, theme: Theme, runs: Path) -> None:
+    def __init__(self, theme: Theme, runs: Path, task: str = FIRST_TASK) -> None:
+        """``task``: the one that is offered first."""
         super().__init__()
         self._theme = theme
         self._runs = runs
-        self.settings = TrainingChoices()
+        self.settings = TrainingChoices(task)
+        self._preset: Sequence[Block] = ()
+        """What the preset sets, as it was read last, and for which choices."""
+        self._preset_of: TrainingChoices | None = None
         self._chosen = 0
         self._note = ""
 
@@ -162,6 +171,12 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         if preview.display:
             preview.tell(self.settings)
         room = max(1, self.size.height - 3)
+        if self.settings != self._preset_of and preview.display:
+            self._preset_of = self.settings
+            self._read_preset(self.settings)
+        if self._preset and preview.display:
+            panel = Panel(f"what preset {self.settings.preset} sets", tuple(self._preset))
+            rows += panel_rows([panel], beside - MARGIN, room - len(rows))
         chosen = next(number for number, each in enumerate(rows) if each and each[0][0] == ">")
         first = max(0, min(chosen - room // 2, len(rows) - room))
         where = lines_shown(first, min(room, len(rows)), len(rows))
@@ -170,6 +185,15 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         self.query_one("#body", TextRows).show(rows[first : first + room])
         self.query_one("#note", TextRows).show([row((self._note[:width], "dim"))])
         self.query_one("#keys", TextRows).show([footer(self.screen_actions, width)])
+
+    @work(exclusive=True, group="preset")
+    async def _read_preset(self, choices: TrainingChoices) -> None:
+        try:
+            self._preset = await to_thread(_preset_blocks, choices)
+        except Exception:  # noqa: BLE001 - a task or an algorithm that does not fit, which starting it tells
+            self._preset = ()
+        if self.is_attached:
+            self._show()
 
     # Keys
 
@@ -302,6 +326,26 @@ def begin_sweep(folder: Path, configs: Sequence[RunConfig]) -> TrainingSweep:
     sweep = TrainingSweep.prepare(folder / name, configs, TEST_EPISODES)
     start_sweep(sweep)
     return sweep
+
+
+def _preset_blocks(choices: TrainingChoices) -> Sequence[Block]:
+    """What the preset sets for this task and algorithm. The learning side takes a moment to import."""
+    from kit.learning.training.algorithms import find_algorithm
+    from kit.learning.training.training import resolve_preset
+
+    preset = resolve_preset(choices.config())
+    has_network = find_algorithm(choices.algorithm).family != "table"
+    layers = [("hidden layers", " ".join(map(str, preset.layers)))] if has_network else []
+    numbers = [
+        (name, number) for name in preset.setting_types() if (number := preset.number_of(name)) is not None
+    ]
+    about = [
+        ("steps", f"{preset.steps:,} at most"),
+        ("worlds", f"{preset.worlds} at once"),
+        *layers,
+        *numbers,
+    ]
+    return [labelled_table(about, is_tight=True)]
 
 
 def _task_items(folders: tuple[Path, ...]) -> list[PickerItem]:

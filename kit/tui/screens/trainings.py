@@ -23,7 +23,7 @@ from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_list_rows import about_run, no_trainings, training_list
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog
-from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen, TrainingChoices
+from kit.tui.screens.new_training import FIRST_TASK, SWEEPS, NewTrainingScreen, TrainingChoices
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
@@ -150,7 +150,7 @@ class TrainingsScreen(RowsScreen[None]):
         names = [each.run.name for each in self._overviews or ()]
         if self._wanted in names:
             self._wanted = None
-        self._chosen = names.index(name) if name in names else max(0, min(self._chosen, len(names) - 1))
+        self._chosen = names.index(name) if name in names else max(0, min(self._chosen, self._last))
         self._marked &= set(names)
         self._show()
 
@@ -160,22 +160,22 @@ class TrainingsScreen(RowsScreen[None]):
         listed = training_list(runs, self._chosen, self._marked, columns, room) if runs else []
         self.set_class(not runs, "-empty")
         self.set_class(bool(runs) and room - len(listed) >= LEAST_ROWS_BELOW, "-short")
-        count = "" if not runs else counted(len(runs), "run")
+        count = (
+            counted(len(runs), "run") if runs else counted(len(self._tasks), "task") if self._tasks else ""
+        )
         self._rows("heading").show([at_both_edges(row(("Trainings", "bold")), row((count, "dim")), width)])
         if runs is None:
             self._rows("body").show([row((" reading ...", "dim"))])
         else:
-            self._rows("body").show(listed or no_trainings(self._tasks, columns, room))
+            self._rows("body").show(listed or no_trainings(self._tasks, self._chosen, columns, room))
         if self._first_task.display:
-            self._first_task.tell(TrainingChoices())
+            self._first_task.tell(TrainingChoices(self._first_task_name))
         self.call_after_refresh(self._follow_chosen)  # once it is decided whether the preview is displayed
         total = sum(each.disk_bytes for each in runs or ())
         about = about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
         unusable = (
-            ()
-            if runs
-            else ("choose", "open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
+            () if runs else ("open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
         )
         self._rows("keys").show([footer(self.screen_actions, width, without=unusable)])
 
@@ -197,6 +197,16 @@ class TrainingsScreen(RowsScreen[None]):
             details.show(training_rows.pages(status, room.width, room.height)[0] if status and room else [])
 
     @property
+    def _last(self) -> int:
+        """The number of the last entry of the list: of the runs, or of the tasks where there are none."""
+        return len(self._overviews or self._tasks) - 1
+
+    @property
+    def _first_task_name(self) -> str:
+        """The task that a first training would learn, unless another one is chosen there."""
+        return self._tasks[self._chosen].name if self._tasks and not self._overviews else FIRST_TASK
+
+    @property
     def _chosen_run(self) -> RunOverview | None:
         runs = self._overviews
         return runs[self._chosen] if runs else None
@@ -208,7 +218,7 @@ class TrainingsScreen(RowsScreen[None]):
     # Keys
 
     def action_choose(self, columns: int, rows: int) -> None:
-        self._chosen = max(0, min(self._chosen + rows, len(self._overviews or ()) - 1))
+        self._chosen = max(0, min(self._chosen + rows, self._last))
         self._show()
 
     def action_open(self) -> None:
@@ -223,7 +233,9 @@ class TrainingsScreen(RowsScreen[None]):
     async def action_begin(self) -> None:
         from kit.learning.training.runs import TrainingRun
 
-        begun = await self.app.push_screen_wait(NewTrainingScreen(self._theme, self._runs))
+        begun = await self.app.push_screen_wait(
+            NewTrainingScreen(self._theme, self._runs, self._first_task_name)
+        )
         if isinstance(begun, TrainingRun):
             self._wanted = begun.name
             await self.app.push_screen_wait(TrainingScreen(self._theme, begun))

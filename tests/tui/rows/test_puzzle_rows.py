@@ -20,6 +20,7 @@ from kit.tui.rows.challenge_rows import (
     LARGEST_SCALE,
     LEAST_TEXT,
     PuzzleCheck,
+    challenge_standing,
     largest_drawing,
     next_medal,
     puzzle_beside,
@@ -193,3 +194,21 @@ def test_the_checks_of_a_puzzle_are_listed_the_newest_first() -> None:
     shown = [row_text(each) for each in tries_rows([checked(1, 0, "none"), checked(2, 3, "best")], 60)]
     assert "2 checks" in shown[0]
     assert [each.split()[-2:] for each in shown[1:]] == [["G", "best"], [".", "none"]]
+
+
+@pytest.mark.parametrize("challenge", all_challenges(), ids=lambda each: each.id)
+def test_the_chosen_one_of_a_list_says_what_its_medals_ask_for_and_what_teaches_it(
+    challenge: Challenge,
+) -> None:
+    told = [row_text(each) for each in challenge_standing(challenge, [], 55)]
+    assert max(map(len, told)) <= 55
+    assert any(line.startswith("── lesson") for line in told)
+    board = challenge.task.board("")
+    if board is not None:
+        assert any(line.startswith("keys") for line in told)
+    if challenge.id == "five-numbers":
+        assert [line.split()[1:] for line in told if line[2:6] in ("gold", "silv", "bron")] == [
+            ["gold", "at", "most", "1,300", "steps"],
+            ["silver", "at", "most", "1,900", "steps"],
+            ["bronze", "at", "most", "4,000", "steps"],
+        ]

@@ -226,6 +226,21 @@ def test_any_size_will_do(size: tuple[int, int]) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.long
+def test_a_large_screen_keeps_what_is_asked_in_sight_in_its_place() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        places = set()
+        for part in ("2", "3"):
+            await pilot.press(part)
+            await pilot.pause()
+            shown = rows(screen)
+            places |= {number for number, line in enumerate(shown) if "── what is asked" in line}
+            assert any("M4.B1 and M2 collide" in line for line in shown)
+        assert len(places) == 1
+
+    play(scene, size=(200, 50))
+
+
 def test_in_plain_characters() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         for key in ("1", "2", "right", "3", "4", "e"):

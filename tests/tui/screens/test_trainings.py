@@ -280,7 +280,25 @@ def test_whoever_has_no_training_is_told_what_comes_after_where_there_is_room(
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "No trainings yet")
         assert all((title.text in text(pilot)) is is_told for title, _ in AFTERWARDS)
-        assert ("more: kit task list" in text(pilot)) is not is_told
+        assert "23 tasks" in rows(pilot)[0]
+
+    stage(lambda theme: TrainingsScreen(theme, tmp_path / "none"), scene, size=size)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (200, 50)], ids=str)
+def test_a_first_training_learns_the_task_that_is_chosen(tmp_path: Path, size: tuple[int, int]) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, ">  turn")
+        await pilot.press("down", "down")
+        await seen(pilot, ">  hallway")
+        if size[0] == 200:
+            await seen(pilot, "algorithms that can learn hallway")
+            await seen(pilot, "the first of 15 cases")
+        await pilot.press("t")
+        await seen(pilot, "A new training")
+        assert any(line.split()[1:3] == ["task", "hallway"] for line in rows(pilot))
+        if size[0] == 200:
+            await seen(pilot, "what preset kit sets")
 
     stage(lambda theme: TrainingsScreen(theme, tmp_path / "none"), scene, size=size)
 
