@@ -232,7 +232,7 @@ def matches(context: click.Context, name: str | None) -> None:
 def replay(context: click.Context, number: int) -> None:
     """Watch match NUMBER of `kit league matches`, with both robots."""
     from kit.school.game.league.league_blocks import match_sentence
-    from kit.school.game.league.standings import match_recordings, read_standings
+    from kit.school.game.league.standings import match_film, read_standings
 
     with _open_league(context) as (league, _):
         found = read_standings(league).matches
@@ -244,12 +244,12 @@ def replay(context: click.Context, number: int) -> None:
             click.echo(f"{match_sentence(match)} Watching it needs a full-screen terminal.")
             return
 
-        recordings = match_recordings(league, match)
+        film = match_film(league, match)
 
         def make_screen(app: KitApp) -> Screen[None]:
-            from kit.tui.screens.league import match_replay
+            from kit.tui.screens.match_replay import MatchReplayScreen
 
-            return match_replay(app.kit_theme, match, recordings)
+            return MatchReplayScreen(app.kit_theme, match, film)
 
         show_screen(terminal, make_screen)
 

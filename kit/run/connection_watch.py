@@ -3,7 +3,7 @@ to that has no other end, and what they ask for that is more than the robot can.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Set
+from collections.abc import Callable, Collection, Iterable, Set
 from typing import TYPE_CHECKING, Final
 
 from kit.ros.graph.connections import find_excesses, find_mistakes
@@ -18,6 +18,9 @@ MAX_TOLD: Final = 20
 STANDS_NS: Final = 2_000_000_000
 """How long a connection is without another end before that is told [ns of simulated time]."""
 LOOK_INTERVAL_NS: Final = 500_000_000
+SENT_NOTHING: Final = (
+    "The program sends no speed: self.publisher.publish(command) sends one, a Twist on cmd_vel."
+)
 
 
 class ConnectionWatch(Observer):
@@ -33,16 +36,31 @@ class ConnectionWatch(Observer):
         tell: Callable[[str], object],
         *,
         commanders: Callable[[], Set[str]] | None = None,
+        commands: Callable[[], Collection[str]] = tuple,
+        way_out: str = "",
     ) -> None:
         """``names``: the full names of the nodes that are watched now; ``tell`` receives a sentence.
 
-        ``commanders``: those of whose commands too large ones are told, by default the same.
+        ``commanders``: those of whose commands too large ones are told, by default the same. ``commands``: topics of which one
+        is to get a message while nodes are watched, by default none; ``way_out`` is told with it.
         """
         self._graph, self._names, self._tell = graph, names, tell
         self._commanders = names if commanders is None else commanders
+        self._commands = commands
+        self._sent_nothing = f"{SENT_NOTHING} {way_out}".rstrip()
+        self._is_commanded = False
         self._since_ns: dict[str, int] = {}
         self._told: set[str] = set()
         self._looked_ns = graph.now_ns
+
+    def begin_again(self) -> None:
+        """Another version of the program drives, and may send nothing."""
+        self._is_commanded = False
+        self._since_ns.pop(self._sent_nothing, None)
+        self._told.discard(self._sent_nothing)
+
+    def on_message(self, topic: str, message: object) -> None:
+        self._is_commanded = self._is_commanded or (topic in self._commands() and message != type(message)())
 
     def on_step(self, simulation: Simulation) -> None:
         self.look()
@@ -53,15 +71,19 @@ class ConnectionWatch(Observer):
         if 0 <= now - self._looked_ns < LOOK_INTERVAL_NS:
             return
         self._looked_ns = now
-        mistakes = find_mistakes(self._graph, self._names())
+        mistakes = [*find_mistakes(self._graph, self._names()), *self._silence()]
         self._since_ns = {each: min(now, self._since_ns.get(each, now)) for each in mistakes}
         self._tell_each(each for each, since in self._since_ns.items() if now - since >= STANDS_NS)
         self._tell_each(find_excesses(self._graph, self._commanders()))
 
     def tell_all(self) -> None:
         """Tells also what has stood for a shorter time: at the end of a run."""
-        self._tell_each(find_mistakes(self._graph, self._names()))
+        self._tell_each([*find_mistakes(self._graph, self._names()), *self._silence()])
         self._tell_each(find_excesses(self._graph, self._commanders()))
+
+    def _silence(self) -> list[str]:
+        is_silent = not self._is_commanded and self._commands() and self._names()
+        return [self._sent_nothing] if is_silent else []
 
     def _tell_each(self, mistakes: Iterable[str]) -> None:
         for mistake in mistakes:

@@ -99,6 +99,7 @@ class Session:
         """What the view draws beside the world."""
         self.metrics = MetricsRecorder.for_scenario(scenario)
         self.runner.observers.append(self.metrics)
+        self._watch: ConnectionWatch | None = None
         self.keys = KeystrokePublisher(self.graph, is_hidden=is_hidden)
         self._switcher = ControllerSwitcher(
             self.runner,
@@ -134,15 +135,22 @@ class Session:
         """Starts a controller, which replaces the present one once it has started well. None: nobody drives."""
         self._switcher.load(controller)
 
-    def watch_connections(self) -> ConnectionWatch:
-        """Warns from now on of what the controller's nodes connect to that has no other end, and ask for that is too much.
+    def watch_connections(self, way_out: str = "") -> ConnectionWatch:
+        """Warns from now on of what the controller's nodes connect to that has no other end, and ask for that is too much, and where
+        it sends no speed: ``way_out`` says how to change that here.
 
         The kit's own controllers need not hear all that they can: of one of them that is told while the robot stands still.
         """
         watch = ConnectionWatch(
-            self.graph, self._watched_nodes, self._warn, commanders=lambda: self._switcher.node_names
+            self.graph,
+            self._watched_nodes,
+            self._warn,
+            commanders=lambda: self._switcher.node_names,
+            commands=self._expected_commands,
+            way_out=way_out,
         )
         self.runner.observers.append(watch)
+        self._watch = watch
         return watch
 
     def play_back(self, recording: Recording) -> None:
@@ -182,6 +190,12 @@ class Session:
             return frozenset()
         return self._switcher.node_names
 
+    def _expected_commands(self) -> tuple[str, ...]:
+        """Topics on which the user's own controller is to send speeds; none where it is one of the kit's."""
+        if self.controller is None or self.controller.file in _files_of_kit():
+            return ()
+        return tuple(topic for name in self.scenario.partners for topic in self.command_topics(name))
+
     def _warn(self, text: str) -> None:
         self._log(LogRecord(self.graph.now_ns, LoggingSeverity.WARN, "kit", text, "", "", 0))
 
@@ -197,6 +211,8 @@ class Session:
         self._log(LogRecord(now, severity, name, text, "", "", 0))
 
     def _log_reload(self, file: Path) -> None:
+        if self._watch is not None:
+            self._watch.begin_again()
         text = f"reloaded {file.name} {datetime.now():%H:%M:%S}"
         self._log(LogRecord(self.graph.now_ns, LoggingSeverity.INFO, "kit", text, "", "", 0))
 

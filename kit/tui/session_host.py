@@ -12,6 +12,7 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from kit.controllers import ControllerFile
+from kit.dialogue.shared_actions import ACTIONS
 from kit.run.pacing import PacingStatus
 
 if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn first
@@ -88,7 +89,7 @@ class SessionHost:
 
             session = Session(find(), seed=self._seed, always_scan=True)
             self._record(session)
-            session.watch_connections()
+            session.watch_connections(f"{ACTIONS['editor'].keys} opens it.")
             session.drive_with(controller)
             session.runner.paused = paused
             self._replace(session)

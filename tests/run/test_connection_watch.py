@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from kit.controllers import ControllerFile, find_controller
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
@@ -17,8 +18,29 @@ from kit.msg.tf2_msgs import TFMessage
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
 from kit.run.connection_watch import LOOK_INTERVAL_NS, MAX_TOLD, STANDS_NS, ConnectionWatch
+from kit.run.episode import run_until
+from kit.run.scenario import find_scenario
+from kit.run.session import Session
 
 SOON_NS, LATER_NS = STANDS_NS // 2, STANDS_NS + 2 * LOOK_INTERVAL_NS
+SILENT = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+class Silent(Node):
+    def __init__(self):
+        super().__init__("silent")
+        self.publisher = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(0.1, self.drive)
+
+    def drive(self):
+        command = Twist()
+        command.linear.x = 0.2
+
+rclpy.init()
+rclpy.spin(Silent())
+"""
 DEAF = """
 import rclpy
 from geometry_msgs.msg import Twist
@@ -193,3 +215,30 @@ def test_a_silent_controller_is_told_of_by_every_verb(verb: str, seconds: str, t
     assert len(lines) == len(SAID)
     for line, (named, there_is) in zip(lines, SAID, strict=True):
         assert line.index(named) < line.index("/deaf") < line.rindex(there_is)
+
+
+def test_a_program_that_sends_no_speed_is_told_so_and_again_after_a_change_that_sends_none(
+    tmp_path: Path,
+) -> None:
+    program = tmp_path / "mine.py"
+    sends = SILENT.replace("x = 0.2", "x = 0.2; self.publisher.publish(command)")
+    for text, is_told in ((SILENT, True), (sends, False)):
+        program.write_text(text)
+        with Session(find_scenario("simple")) as session:
+            watch = session.watch_connections("^E opens it.")
+            session.drive_with(ControllerFile("mine", program, ""))
+            session.wait_until_driven()
+            run_until(session.runner, ticks=400)
+            told = [each.text for each in session.messages if "sends no speed" in each.text]
+            assert len(told) == is_told
+            assert all("publish(" in each and "^E" in each for each in told)
+            watch.begin_again()
+            run_until(session.runner, ticks=400)
+            told = [each.text for each in session.messages if "sends no speed" in each.text]
+            assert len(told) == 2 * is_told
+    with Session(find_scenario("simple")) as session:  # nobody has pressed a key
+        session.watch_connections()
+        session.drive_with(find_controller("teleop"))
+        session.wait_until_driven()
+        run_until(session.runner, ticks=400)
+        assert not [each for each in session.messages if "sends no speed" in each.text]

@@ -70,6 +70,7 @@ class Battery:
             self.charge = self._conditions.charge
 
 
+NOT_MOVED: Final = "the robot never moved; a program moves it by a Twist that it publishes on cmd_vel"
 STANDING_SPEED: Final = 0.02
 """A robot slower than this stands still [m/s]."""
 OUTPUT_INTERVAL: Final = 10
@@ -163,8 +164,12 @@ class RaceReferee(Observer):
             splits=self.objective.splits,
             has_stopped=self._has_stopped,
             is_apart=self.objective.is_apart,
-            shortfall=self.objective.shortfall if reached_s is None else "",
+            shortfall=self._shortfall if reached_s is None else "",
         )
+
+    @property
+    def _shortfall(self) -> str:
+        return self.objective.shortfall if self._has_moved else NOT_MOVED
 
     @property
     def is_over(self) -> bool:
@@ -269,6 +274,7 @@ def open_race(
     referee = RaceReferee(level, scenario)
     recorder = Recorder.for_scenario(scenario, session.runner.simulation)
     session.runner.observers += [referee, recorder]
+    session.watch_connections()
     session.drive_with(controller)
     session.wait_until_driven()
     return session, referee, recorder
@@ -308,7 +314,7 @@ def run_again(level: GameLevel, recording: Recording) -> tuple[RaceFinish, Recor
         session.runner.observers += [referee, recorder]
         session.play_back(recording)
         run_until(session.runner, ticks=recording.ticks)
-        return referee.finish, recorder.recording()
+        return referee.finish, replace(recorder.recording(), inputs=recording.inputs)
 
 
 def open_again(

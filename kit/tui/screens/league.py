@@ -16,27 +16,29 @@ from textual.binding import BindingType
 from kit.controllers import user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
+from kit.document.blocks import Text, Tone
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, at_both_edges, fitted, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
-from kit.render.scene import Scene
-from kit.run.recording import Recording
-from kit.run.scenario import Scenario
-from kit.school.game.ghosts import Ghost
 from kit.school.game.league.entries import LeagueError, program_of_agent, submit
 from kit.school.game.league.league import League
-from kit.school.game.league.league_blocks import KEYS, matches_table, standings_table, summary_blocks
-from kit.school.game.league.standings import Match, Standings, match_recordings, read_standings
-from kit.school.game.league.tag_game import tag_scenario
-from kit.school.game.starts import film_scenario
+from kit.school.game.league.league_blocks import (
+    KEYS,
+    level_grid,
+    matches_table,
+    result_sentence,
+    standings_table,
+    summary_blocks,
+)
+from kit.school.game.league.standings import Match, Standings, match_film, read_standings
 from kit.school.game.two_players import STILL_SECONDS
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
-from kit.tui.screens.lesson_drive import ReplayScreen
 from kit.tui.screens.level_drive import LeftError
-from kit.tui.screens.level_pictures import ghost_marks, ghost_paths, pictures_of
+from kit.tui.screens.level_pictures import pictures_of
+from kit.tui.screens.match_replay import MatchReplayScreen
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
@@ -45,6 +47,7 @@ from kit.workspace import Workspace
 WIDE: Final = 110
 """Columns from which the matches stand beside the standings."""
 STANDINGS_WIDTH: Final = 68
+GRID_SIGNS: Final = "+ won  - lost  = drawn"
 LEAST_MAP_ROWS: Final = 12
 """Rows without which the levels' maps are not shown."""
 
@@ -74,11 +77,14 @@ class LeagueScreen(RowsScreen[None]):
         self._league = league
         self._workspace = workspace
         self._standings: Standings | None = None
-        self._chosen = 0
+        self._chosen: int | None = None
+        """The number of the chosen entrant, one's own at first; None before one is known."""
         self._match: int | None = None
         """The number of the chosen one among the entrant's matches; None while an entrant is chosen."""
         self._note = ""
         self._is_running = False
+        self._driving = ""
+        """How many matches of a run have been driven; empty where none is driven."""
         self._maps: list[Row] = []
         """Pictures of what is driven, beside the rules of a league that nobody has entered yet."""
 
@@ -106,7 +112,6 @@ class LeagueScreen(RowsScreen[None]):
             return
         except LeagueError as error:
             self._note = str(error)
-        self._chosen = min(self._chosen, max(0, len(self._entrants) - 1))
         if self._match is not None:
             self._match = min(self._match, len(self._matches) - 1) if self._matches else None
         if self.is_attached:
@@ -144,11 +149,19 @@ class LeagueScreen(RowsScreen[None]):
         return [] if self._standings is None else [each.entry.name for each in self._standings.places]
 
     @property
+    def _at(self) -> int:
+        """The number of the chosen entrant: one's own where none has been chosen."""
+        places = () if self._standings is None else self._standings.places
+        if self._chosen is not None:
+            return max(0, min(self._chosen, len(places) - 1))
+        return next((number for number, each in enumerate(places) if each.entry.is_mine), 0)
+
+    @property
     def _matches(self) -> Sequence[Match]:
         """Those of the chosen entrant."""
         if self._standings is None or not self._entrants:
             return ()
-        return self._standings.matches_of(self._entrants[self._chosen])
+        return self._standings.matches_of(self._entrants[self._at])
 
     def _show(self) -> None:
         if not self.is_attached:
@@ -164,7 +177,9 @@ class LeagueScreen(RowsScreen[None]):
         below = [row(), *(row("   ", *each) for each in self._maps)] if self._entrants and self._maps else []
         has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
         self._rows("body").show([*tables, *below] if has_room else tables)
-        self._rows("note").show([fitted(row((f"  {self._note or self._told_of_match}", "dim")), width)])
+        self._rows("note").show(
+            [fitted(row((f"  {self._note or self._told_of_match or self._driving}", "dim")), width)]
+        )
         labels = {"open": "matches" if self._match is None else "replay"}
         idle = () if self._entrants else ("choose", "open", "run_matches")
         self._rows("keys").show([footer(self.screen_actions, width, labels=labels, without=idle)])
@@ -174,10 +189,7 @@ class LeagueScreen(RowsScreen[None]):
         """What both did in the chosen match: the table has no room for it on most screens."""
         if self._match is None:
             return ""
-        match = self._matches[self._match]
-        return "; ".join(
-            f"{each.name}: {detail}" for each, detail in zip(match.entrants, match.details, strict=True)
-        )
+        return result_sentence(self._matches[self._match])
 
     @property
     def _room(self) -> tuple[int, int]:
@@ -191,10 +203,14 @@ class LeagueScreen(RowsScreen[None]):
         head = [row(), *rows_of(summary_blocks(standings, KEYS), Page(left_width - 4, margin=2)), row()]
         room = height - len(head)
         left: list[Row] = list(head)
+        name = self._entrants[self._at] if self._entrants else ""
         if standings.places:
-            left += list_rows(standings_table(standings), left_width, room, self._chosen)
-        name = self._entrants[self._chosen] if self._entrants else ""
-        table = matches_table(self._matches)
+            left += list_rows(standings_table(standings), left_width, room, self._at)
+            grid = level_grid(standings, name)
+            below = rows_of([grid, Text(GRID_SIGNS, Tone.DIM)], Page(left_width - 4, margin=2))
+            if is_wide and grid.rows and len(left) + len(below) + 1 <= height:
+                left += [row(), *below]
+        table = matches_table(self._matches, name)
         right: list[Row] = [row(), row((f"   Matches of {name}" if name else "", "bold")), row()]
         if table.rows:
             right_width = width - left_width if is_wide else width
@@ -220,7 +236,7 @@ class LeagueScreen(RowsScreen[None]):
         elif columns > 0:
             self._match = 0 if self._matches else None
         else:
-            self._chosen = max(0, min(self._chosen + rows, len(self._entrants) - 1))
+            self._chosen = max(0, min(self._at + rows, len(self._entrants) - 1))
         self._show()
 
     @work(exclusive=True, group="open")
@@ -232,12 +248,12 @@ class LeagueScreen(RowsScreen[None]):
         self._show_note("Running the drives again ...")
         try:
             match = self._matches[self._match]
-            recordings = await to_thread(match_recordings, self._league, match)
+            film = await to_thread(match_film, self._league, match)
         except LeagueError as error:
             self._show_note(str(error))
             return
         self._show_note("")
-        self.app.push_screen(match_replay(self._theme, match, recordings))
+        self.app.push_screen(MatchReplayScreen(self._theme, match, film))
 
     def action_back(self) -> None:
         if self._match is not None:
@@ -271,6 +287,8 @@ class LeagueScreen(RowsScreen[None]):
             self.app.push_screen(MessageDialog("Not entered", str(error)))
             return
         await self._read_now(f"{name} is entered.")
+        if self._league.is_mine:
+            self.action_run_matches()
 
     @work(group="run")
     async def action_run_matches(self) -> None:
@@ -287,6 +305,8 @@ class LeagueScreen(RowsScreen[None]):
                 nonlocal done
                 done += 1
                 self.app.call_from_thread(self._show_count, done, len(keys))
+                if done < len(keys):  # what is driven is seen at once
+                    self.app.call_from_thread(self._read)
 
             if keys:
                 self._show_count(0, len(keys))
@@ -297,11 +317,13 @@ class LeagueScreen(RowsScreen[None]):
             return
         finally:
             self._is_running = False
+        self._driving = ""
         idle = "All matches are driven." if len(self._entrants) > 1 else "A match needs two entrants."
         await self._read_now(f"{len(keys)} were driven." if keys else idle)
 
     def _show_count(self, done: int, count: int) -> None:
-        self._show_note(f"Driving: {done} of {count}.")
+        self._driving = f"Driving: {done} of {count}. Who leaves goes on later." if done < count else ""
+        self._show()
 
     def _show_note(self, note: str) -> None:
         self._note = note
@@ -315,43 +337,3 @@ NOTES: Final = (
     ("tag", "two robots in one world; a second counts against the catcher"),
     ("", f"or the other one where that alone stands still for {STILL_SECONDS:.0f} s"),
 )
-
-
-def match_replay(theme: Theme, match: Match, recordings: Sequence[Recording]) -> ReplayScreen:
-    """The replay of a match, with both. ``recordings``: of ``match_recordings``."""
-    first, second = match.entrants
-    title = f"{first.name} against {second.name}"
-    if match.is_tag:
-        return ReplayScreen(theme, tag_scenario(match.level), recordings[0], f"tag: {title}")
-    both = list(zip((first.name, second.name), recordings, strict=True))
-    (robot, longer), other = sorted(
-        both, key=lambda each: -each[1].ticks
-    )  # so that both are seen to their end
-    scenario = film_scenario(match.level, longer.seed)
-    title = f"{robot} against {other[0]}, the letter {other[0][:1].lower()}"
-    return MatchReplayScreen(theme, scenario, longer, title, other)
-
-
-class MatchReplayScreen(ReplayScreen):
-    """One entrant's drive, and the other's as a letter on a dotted way."""
-
-    def __init__(
-        self,
-        theme: Theme,
-        place: Scenario,
-        recording: Recording,
-        title: str,
-        other: tuple[str, Recording],
-    ) -> None:
-        super().__init__(theme, place, recording, title)
-        name, drive = other
-        tracks = tuple(drive.track(robot) for robot in place.partners) if drive.ticks else ()
-        self._ghost = Ghost(name, drive.ticks * drive.step_size, tracks, drive.step_size)
-        self._way = tuple(ghost_paths(self._ghost))
-
-    def _newest_scene(self) -> Scene:
-        scene = super()._newest_scene()
-        if self.view is None:
-            return scene
-        marks = ghost_marks((self._ghost,), self.view.time_s)
-        return replace(scene, paths=(*self._way, *scene.paths), marks=(*scene.marks, *marks))

@@ -9,7 +9,8 @@ from textual.pilot import Pilot
 
 from kit.school.game.league.entries import HOLDERS
 from kit.school.game.league.league import own_league
-from kit.tui.screens.league import LeagueScreen, MatchReplayScreen
+from kit.tui.screens.league import LeagueScreen
+from kit.tui.screens.match_replay import MatchReplayScreen
 from kit.workspace import open_workspace
 from tests.school.game.league.test_league import GIVES_UP, LASER, make_league, run
 from tests.tui.lesson_stage import seen, stage, text, until
@@ -66,6 +67,9 @@ def test_from_the_standings_to_a_match_and_its_replay(tmp_path: Path, size: tupl
         await pilot.press("enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, MatchReplayScreen), "the replay")
         await seen(pilot, "laser against stands")
+        await seen(pilot, "the robot: laser   the letter S: stands")
+        await pilot.press("3")
+        await seen(pilot, "laser won as the only one to arrive")
         await pilot.press("escape")
         await seen(pilot, "Matches of laser")
         await pilot.press("escape")

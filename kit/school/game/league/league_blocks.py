@@ -13,6 +13,8 @@ from kit.school.game.league.standings import DRAW, Match, Place, Standings
 from kit.school.game.two_players import TAG_RULE
 
 TEXT = CellStyle.TEXT
+MOST_OPPONENTS: Final = 4
+"""Of an entrant, in the table of its matches by level."""
 HOUSE: Final = f"{join_names(tuple(SPEEDS))}, the programs of the house, which everybody meets; then those that others enter."
 
 
@@ -127,38 +129,77 @@ def _place_cells(each: Place) -> tuple[Cell, ...]:
     return number, name, driver, points, interval, each.won, each.drawn, each.lost
 
 
+def level_grid(standings: Standings, name: str) -> Table:
+    """How an entrant has fared against each other one, level by level: ``+`` for a match that it won, ``-`` lost, ``=`` drawn."""
+    others = [each.entry.name for each in standings.places if each.entry.name != name]
+    signs: dict[tuple[str, str], str] = {}
+    for match in standings.matches_of(name):
+        is_first = match.entrants[0].name == name
+        other = match.entrants[int(is_first)].name
+        points = match.points if is_first else 1.0 - match.points
+        key = _match_title(match), other
+        signs[key] = signs.get(key, "") + ("=" if points == DRAW else "+" if points > DRAW else "-")
+    met = [each for each in others if any(other == each for _, other in signs)][:MOST_OPPONENTS]
+    rows = tuple(
+        (title, *(signs.get((title, other), "") for other in met))
+        for title in dict.fromkeys(title for title, _ in signs)
+    )
+    columns = (Column(f"{name}, level by level", TEXT), *(Column(each, TEXT) for each in met))
+    return Table("levels", "", columns, rows)
+
+
+def _match_title(match: Match) -> str:
+    return f"{'tag' if match.is_tag else 'race'}, {match.level.title}"
+
+
 def match_sentence(match: Match) -> str:
     """What a match was and how it ended."""
-    first, second = match.entrants
-    ended = "draw" if match.winner is None else f"{match.winner.name} won"
-    what = "tag" if match.is_tag else "race"
-    return f"{what}, {match.level.title}: {first.name} ({match.details[0]}) against {second.name} ({match.details[1]}): {ended}."
+    what = "Tag" if match.is_tag else "Race"
+    names = " against ".join(each.name for each in match.entrants)
+    return f"{what}, {match.level.title}: {names}. {result_sentence(match)}"
+
+
+def result_sentence(match: Match) -> str:
+    """Who won a match, and by what."""
+    ended = "Draw" if match.winner is None else f"{match.winner.name} won {match.by}"
+    did = "; ".join(
+        f"{entry.name}: {detail}" for entry, detail in zip(match.entrants, match.details, strict=True)
+    )
+    return f"{ended} ({did})."
 
 
 def matches_table(matches: Sequence[Match], name: str | None = None) -> Table:
-    """Matches with a number each, from 1; ``name``: only those of this entrant."""
+    """Matches with a number each, from 1; ``name``: only those of this entrant, who is named first."""
     columns = (
-        Column("", CellStyle.TEXT),
-        Column("", CellStyle.TEXT),
-        Column("first", TEXT),
         Column("", TEXT),
-        Column("second", TEXT),
+        Column("", TEXT),
+        Column("", TEXT),
+        Column("", TEXT),
+        Column("", TEXT),
+        Column("", TEXT, is_optional=True),
         Column("first did", TEXT, is_optional=True),
         Column("second did", TEXT, is_optional=True),
     )
     rows = tuple(
-        (
-            f"{number}",
-            f"{'tag' if match.is_tag else 'race'}, {match.level.title}",
-            match.entrants[0].name,
-            "draw" if match.points == DRAW else "beat" if match.points > DRAW else "lost to",
-            match.entrants[1].name,
-            *(
-                detail if match.is_same_platform else f"{detail} (another machine)"
-                for detail in match.details
-            ),
-        )
+        _match_cells(number, match, is_turned=match.entrants[1].name == name)
         for number, match in enumerate(matches, 1)
         if name is None or name in (each.name for each in match.entrants)
     )
     return Table("matches", "", columns, rows)
+
+
+def _match_cells(number: int, match: Match, *, is_turned: bool) -> tuple[Cell, ...]:
+    (first, second), details, points = match.entrants, match.details, match.points
+    if is_turned:
+        first, second, details, points = second, first, details[::-1], 1.0 - points
+    word, tone = ("beat", Tone.GOOD) if points > DRAW else ("lost to", Tone.WARN)
+    elsewhere = "" if match.is_same_platform else " (another machine)"
+    return (
+        f"{number}",
+        _match_title(match),
+        first.name,
+        ToneText("drew with", Tone.PLAIN) if points == DRAW else ToneText(word, tone),
+        second.name,
+        match.by,
+        *(f"{detail}{elsewhere}" for detail in details),
+    )

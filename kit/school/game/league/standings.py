@@ -22,9 +22,11 @@ from kit.school.game.league.league import (
     tag_job,
 )
 from kit.school.game.league.ratings import Rating, rate
+from kit.school.game.league.tag_game import tag_again
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import finish_order, middle_drive
 from kit.school.game.starts import OWN_SEED
+from kit.school.game.two_players import SharedGameState
 from kit.sim.simulation import STEP_SIZE_S
 
 DIVISION_SIZE: Final = 6
@@ -44,6 +46,8 @@ class Match:
     """At tag the first began as the catcher."""
     points: float
     """Of the first: 1 it won, 0 it lost, 0.5 a draw."""
+    by: str
+    """What decided it, in words that follow on who won; empty for a draw."""
     details: tuple[str, str]
     """What each did, in words."""
     jobs: tuple[LeagueJob, ...]
@@ -163,11 +167,23 @@ def _standings_of(
     )
 
 
-def match_recordings(league: League, match: Match) -> tuple[Recording, ...]:
-    """The recordings of a match, run again: of a race the two drives from the level's own start, the only one that both have,
-    of tag the game. Raises LeagueError."""
-    recordings = [each for job in match.jobs for each in league.recordings(job)]
-    return tuple(each for each in recordings if each.seed == OWN_SEED)
+@dataclass(frozen=True, slots=True, eq=False)
+class MatchFilm:
+    """A match, to be looked at."""
+
+    recordings: tuple[Recording, ...]
+    """Of a race the two drives from the level's own start, the only one that both have; of tag the game."""
+    states: tuple[SharedGameState, ...] = ()
+    """Of tag: how it stood, every ``TOLD_TICKS`` ticks."""
+
+
+def match_film(league: League, match: Match) -> MatchFilm:
+    """Runs the recordings of a match again. Raises LeagueError."""
+    recordings = [each for job in match.jobs for each in league.recordings(job) if each.seed == OWN_SEED]
+    states: list[SharedGameState] = []
+    if match.is_tag:
+        tag_again(match.level, recordings[0], states.append)
+    return MatchFilm(tuple(recordings), tuple(states))
 
 
 def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, JudgedJob]) -> Match:
@@ -187,9 +203,17 @@ def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, Judge
     first, second = orders
     is_draw = first[:2] == second[:2] and abs(first[2] - second[2]) < STEP_SIZE_S
     points = DRAW if is_draw else float(first < second)
+    if is_draw:
+        by = ""
+    elif first[0] != second[0]:
+        by = "as the only one to arrive"
+    elif first[0]:
+        by = "because the other program failed"
+    else:
+        by = f"by {abs(first[2] - second[2]):.2f} s" if first[1] == second[1] else "without a bump"
     entrants = jobs[0].entrants[0], jobs[1].entrants[0]
     is_same = all(each.is_same_platform for each in judged)
-    return Match(jobs[0].level, False, entrants, points, (details[0], details[1]), jobs, is_same)
+    return Match(jobs[0].level, False, entrants, points, by, (details[0], details[1]), jobs, is_same)
 
 
 def tag_match(job: LeagueJob, game: JudgedJob) -> Match:
@@ -201,12 +225,18 @@ def tag_match(job: LeagueJob, game: JudgedJob) -> Match:
         points = DRAW
     else:
         points = float(game.winner == 0)
+    by = f"by {abs(game.scores[0] - game.scores[1]):.1f} s"
+    if first_failed != second_failed:
+        by = "because the other program failed"
     remarks = (*game.remarks, "", "")
     details = [
         remark or f"{seconds:.1f} s against it" for remark, seconds in zip(remarks, game.scores, strict=False)
     ]
     entrants = job.entrants[0], job.entrants[1]
-    return Match(job.level, True, entrants, points, (details[0], details[1]), (job,), game.is_same_platform)
+    told = "" if points == DRAW else by
+    return Match(
+        job.level, True, entrants, points, told, (details[0], details[1]), (job,), game.is_same_platform
+    )
 
 
 def _rank_entrants(entrants: Sequence[Entry], matches: Sequence[Match]) -> tuple[Place, ...]:

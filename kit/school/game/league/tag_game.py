@@ -8,7 +8,7 @@ services of the world. Beside its robot's topics it is told ``is_catcher`` (std_
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from typing import Final
@@ -115,9 +115,12 @@ def play_tag(
     return TagGame(referee.state, recorder.recording(), (failures[0], failures[1]))
 
 
-def tag_again(level: GameLevel, recording: Recording) -> tuple[SharedGameState, Recording]:
-    """Runs a recorded game again, bit for bit, and judges it. Raises as ``shared_scenario``, ValueError if it is of another
-    level, and RecordingError where an input is not possible in its world."""
+def tag_again(
+    level: GameLevel, recording: Recording, on_state: Callable[[SharedGameState], object] | None = None
+) -> tuple[SharedGameState, Recording]:
+    """Runs a recorded game again, bit for bit, and judges it. ``on_state``: gets how it stands, every ``TOLD_TICKS`` ticks from
+    the first on. Raises as ``shared_scenario``, ValueError if it is of another level, and RecordingError where an input is not
+    possible in its world."""
     scenario = tag_scenario(level)
     if (recording.place, recording.case, recording.seed) != (scenario.name, level.case, OWN_SEED):
         raise ValueError(f"this is a game on {recording.place} {recording.case or ''}, not on {level.title}")
@@ -129,7 +132,12 @@ def tag_again(level: GameLevel, recording: Recording) -> tuple[SharedGameState, 
     runner.participants.append(playback)
     runner.observers += [playback, referee, recorder]
     referee.begin()
-    run_until(runner, ticks=recording.ticks)
+
+    def tell(tick: int) -> None:
+        if on_state is not None and simulation.tick % TOLD_TICKS == 0:
+            on_state(referee.state)
+
+    run_until(runner, ticks=recording.ticks, before_tick=tell)
     return referee.state, recorder.recording()
 
 

@@ -45,12 +45,12 @@ from kit.school.game.league.league import (
     read_programme,
     tag_job,
 )
-from kit.school.game.league.league_blocks import standings_table, summary_blocks
+from kit.school.game.league.league_blocks import matches_table, standings_table, summary_blocks
 from kit.school.game.league.standings import (
     DRAW,
     Match,
     Standings,
-    match_recordings,
+    match_film,
     race_match,
     read_standings,
 )
@@ -211,16 +211,23 @@ def test_two_play_tag_in_one_world_and_each_begins_once(tmp_path: Path) -> None:
     assert {each.entrants[0].name for each in standings.matches} == {"chases", "stands"}
     assert names(standings) == ["chases", "stands"]
     assert all(each.winner is not None and each.winner.name == "chases" for each in standings.matches)
-    (recording,) = match_recordings(league, standings.matches[0])
+    film = match_film(league, standings.matches[0])
+    (recording,) = film.recordings
+    assert film.states[-1].scores == pytest.approx(
+        league.judge(standings.matches[0].jobs[0]).scores, abs=0.2
+    ), "how it stood, to the end"
     assert recording.ticks * recording.step_size == pytest.approx(TAG_SECONDS)
     assert all(len(recording.track(robot)) for robot in tag_scenario(ARENA).drivers)
 
 
 def test_a_replay_shows_both_drives_of_a_race_from_one_start(driven: League) -> None:
     (match,) = read_standings(driven).matches
-    drives = match_recordings(driven, match)
+    drives = match_film(driven, match).recordings
     assert len(drives) == 2
     assert drives[0].seed == drives[1].seed
+    assert any(each.inputs for each in drives), "so that the robot drives again"
+    assert match.winner is not None
+    assert match.by in " ".join(lines_of([matches_table([match])]))
 
 
 def test_the_standings_are_told_while_the_drives_are_run_again(driven: League) -> None:
