@@ -218,7 +218,7 @@ def puzzle_page(
     last: Sequence[Row] = (),
 ) -> list[Row]:
     """A puzzle below each other: what it asks for, its board, what the answer is worth. ``judgement``: or why there is none.
-    ``beside``, ``last``: parts that stand beside the board before and after its details, those that fit there. A check changes no row's place. Where there are too few
+    ``beside``, ``last``: parts that stand beside the board before and after the first of its details, those that fit there. A check changes no row's place. Where there are too few
     rows, the story gives way first, then the sentence about the worth, then the task."""
     story, task, keys = _about_puzzle(challenge, board, width)
     worth, sentence = worth_now(judgement, width, check)
@@ -254,7 +254,7 @@ def puzzle_beside(
 ) -> list[Row]:
     """A puzzle with its picture at the left and the curve of its moves below, and beside it what it asks for, what the answer is
     worth and what helps to solve it, in two columns where there is room. The picture is the board, or a drawing of it, which then
-    stands among the rest. ``beside``, ``last``: more parts, before and after the board's details, those that fit."""
+    stands among the rest. ``beside``, ``last``: more parts, before and after the first of the board's details, those that fit."""
     if drawing := board.drawing(int(width * DRAWING_SHARE), height - 1, glyphs):
         column, left = max(map(row_width, drawing)) + GAP, drawing
     else:
@@ -274,7 +274,7 @@ def puzzle_beside(
     if drawing:
         cells, told = _table_and_rest(board.rows())
         table = [*cells, *(each for shown in told for each in _wrap_row(shown, room))]
-    below = (table, *beside, last) if count > 1 else (table, *beside, *details, last)
+    below = (table, *beside, last) if count > 1 else (table, *beside, *details[:1], last, *details[1:])
     text += _stacked(below, room, height - len(text))
     shown = side_by_side([row(), *left], text, column)
     return shown if count == 1 else side_by_side(shown, _stacked(details, room, height), column + room + GAP)
@@ -330,7 +330,8 @@ def _with_drawing(
     column = max(map(row_width, table), default=0) + GAP
     right = board.drawing(width - column, max(len(table), height - len(rest)), glyphs)
     if not right:
-        parts = (*beside, *board.details(width - column), last)
+        details = board.details(width - column)
+        parts = (*beside, *details[:1], last, *details[1:])
         right = _stacked(parts, width - column, len(table) + 1)[1:]
     return [*(side_by_side(table, right, column) if right else table), *rest]
 

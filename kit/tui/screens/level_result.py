@@ -73,7 +73,7 @@ LEAST_BESIDE_ROWS, MOST_BESIDE_ROWS = 9, 12
 """Of that map."""
 LEAST_MAP_ROWS: Final = 7
 """Of the map below the result; where there are fewer it is left out."""
-LADDER_COLUMNS: Final = 42
+LADDER_COLUMNS: Final = 46
 """Columns of the ladder beside the next level."""
 NEXT_ROWS: Final = 7
 """Of the next level's picture."""

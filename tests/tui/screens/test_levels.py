@@ -33,12 +33,14 @@ from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui import flourish
 from kit.tui.app import KitApp
+from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.screens import level_result
 from kit.tui.screens import levels as levels_module
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import (
+    LADDER_COLUMNS,
     LEAST_BESIDE_ROWS,
     LEFT,
     ROWS_AROUND,
@@ -756,6 +758,10 @@ def test_the_end_of_a_drive_shows_all_rungs_and_the_next_level(
         assert following.title in shown
         order = [shown.index(f" {each} ") for each in ("record", "master", "you", "silver", "bronze")]
         assert order == sorted(order), "the time stands among the rungs"
+        slow = ladder_of_drive(
+            replace(result.finish, seconds=1.0), result.record, DriverKind.KEYS, 99.0, is_tall=True
+        )
+        assert max(map(row_width, slow)) < LADDER_COLUMNS, "nothing of it is cut"
         assert ("m/s" in shown) is (size[1] == 50)
 
     play(scene, progress, tmp_path / "desk", size)
