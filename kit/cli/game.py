@@ -471,7 +471,7 @@ def _record_drive(
     from kit.school.game.drive_records import record_drive
     from kit.school.game.player_progress import BY_HAND
     from kit.school.game.references import reference_seconds
-    from kit.tui.rows.drive_end_rows import RUN_OF_THE_DAY
+    from kit.tui.rows.drive_end_rows import REPLACES, RUN_OF_THE_DAY
     from kit.tui.rows.ladder_rows import ladder_rows
     from kit.tui.rows.level_rows import starts_rows
 
@@ -504,6 +504,8 @@ def _record_drive(
         messages.say(
             f"Your best so far {driver.phrase}; to replay it: kit game replay {level.command_name} --driver {driver}"
         )
+    if record.replaces:
+        click.echo(f"The board: {REPLACES}.")
     reference = reference_seconds(level)
     if reference is not None:
         for each in ladder_rows(driver, reference, finish.seconds if finish.reached else None):

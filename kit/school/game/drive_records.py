@@ -14,7 +14,7 @@ from kit.render.encode import BrailleEncoder
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
 from kit.run.animation import AnimationSettings, export_recording
-from kit.run.recording import Recording
+from kit.run.recording import Recording, RecordingError
 from kit.school.game import leaderboard
 from kit.school.game.challenges import all_challenges
 from kit.school.game.daily import DAILY_PREFIX, daily_level, has_run, streak, today
@@ -32,9 +32,10 @@ from kit.school.game.player_progress import (
     level_progress,
     open_level_after,
 )
-from kit.school.game.race import DriverKind, RaceFinish, middle_drive
+from kit.school.game.race import DriverKind, RaceFinish, middle_drive, run_again
 from kit.school.game.references import reference_seconds
 from kit.school.game.shared_answers import publish_answers
+from kit.school.game.shared_drives import digest_of
 from kit.school.game.starts import film_scenario
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
@@ -57,6 +58,8 @@ class DriveRecord:
     is_practice: bool
     """Whether a run of this day's level came before: only the first one counts."""
     is_best: bool
+    replaces: bool
+    """Whether it takes the place of a better one which this version of the kit drives differently, so that no board shows it."""
     previous_best: float | None
     """The driver's shortest time before [s]."""
     previous_medal: Medal
@@ -104,9 +107,16 @@ def record_drive(
     lessons = completed_lessons(levels, events)
     before = level_progress(levels, events, lessons)
     (of_level,) = level_progress([level], events)
-    is_best = not facts.is_shipped and not is_practice and is_best_drive(of_level, driver, finish)
+    counts_as_own = not facts.is_shipped and not is_practice
+    is_best = counts_as_own and is_best_drive(of_level, driver, finish)
+    replaces = (
+        counts_as_own
+        and finish.reached
+        and not is_best
+        and not _drives_again(best_recordings(workspace, level, driver), level)
+    )
     recording_file = None
-    if is_best:
+    if is_best or replaces:
         try:
             recording_file = save_ghost(
                 workspace, level, driver, [recording for _, recording in drives], counts
@@ -130,7 +140,7 @@ def record_drive(
         belt_of([each.best_medal for each in progress if each.level.world == level.world])
         for progress in (before, after)
     )
-    if is_best:
+    if is_best or replaces:
         _update_leaderboard(journal, workspace, level, driver)
     return DriveRecord(
         counts,
@@ -140,6 +150,7 @@ def record_drive(
         facts.is_shipped,
         is_practice,
         is_best,
+        replaces,
         of_level.best_times.get(driver),
         of_level.medals.get(driver, Medal.NONE),
         tuple(
@@ -152,6 +163,15 @@ def record_drive(
         streak(events, today()) if level.id.startswith(DAILY_PREFIX) else 0,
         recording_file,
     )
+
+
+def _drives_again(recordings: Sequence[Recording], level: GameLevel) -> bool:
+    """Whether the drive that counts, the first of these, is the same one when it is run again; False where there is none."""
+    try:
+        again = [run_again(level, each)[1] for each in recordings[:1]]
+    except (RecordingError, ValueError):
+        return False
+    return bool(again) and digest_of(again[0]) == digest_of(recordings[0])
 
 
 def join_leaderboard(journal: ProgressJournal, workspace: Workspace, name: str) -> None:

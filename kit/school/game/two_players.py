@@ -90,7 +90,7 @@ class SharedGameState:
     watching: tuple[str, ...] = ()
     """Names of those who only watch."""
     has_left: bool = False
-    """Whether it is over because the player who has not won has left."""
+    """Whether it is over, or waits again, because the player who has not won has left."""
 
     def next_targets(
         self, targets: Sequence[tuple[float, float]], player: int | None
@@ -258,6 +258,7 @@ class SharedGame(SharedReferee):
         """The second player has come: the countdown begins."""
         self._has_second = True
         if self._phase is SharedPhase.WAITING:
+            self._has_left = False
             self._enter(SharedPhase.COUNTDOWN)
 
     def ask_again(self) -> None:
@@ -274,6 +275,7 @@ class SharedGame(SharedReferee):
             self._has_left = True
             self._enter(SharedPhase.OVER)
         elif self._phase is SharedPhase.COUNTDOWN:
+            self._has_left = True
             self._enter(SharedPhase.WAITING)
 
     def rematch(self) -> None:

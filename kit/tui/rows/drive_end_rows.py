@@ -23,6 +23,7 @@ LEAST_LEAD: Final = 0.5
 HIGHEST_LEAD: Final = 15
 """Rows of a chart."""
 RUN_OF_THE_DAY: Final = "this run counts; what follows is practice"
+REPLACES: Final = "it replaces a best that this kit drives differently"
 MARK: Final = 5
 """Columns of a star before what it is for."""
 
@@ -140,6 +141,8 @@ def won_besides(level: GameLevel, record: DriveRecord) -> list[Row]:
     rows = []
     if level.id.startswith(DAILY_PREFIX) and not record.is_practice:
         rows.append(row(("   today:  ", "dim"), (RUN_OF_THE_DAY, "good")))
+    if record.replaces:
+        rows.append(row(("   board:  ", "dim"), REPLACES))
     if record.unlocked:
         titles = ", ".join(each.title for each in record.unlocked)
         rows.append(row(("   opened: ", "dim"), (titles, "good")))

@@ -57,8 +57,9 @@ def shared_message(
 ) -> tuple[Row, ...]:
     """Says what to do now, and the score. ``me``: this player; None watches. ``join``: how another comes in."""
     if state.phase is SharedPhase.WAITING:
+        left = f"{state.names[1] or 'The second player'} has left. " if state.has_left else ""
         return (
-            row((" Waiting for the second player.", "bold")),
+            row((f" {left}Waiting for the second player.", "bold")),
             row((f" In another terminal of this machine: {join}" if join else "", "dim")),
         )
     if state.phase is SharedPhase.COUNTDOWN:

@@ -41,6 +41,7 @@ class ReplayScreen(WatchScreen):
     )
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     shows_mode = False
+    escape_leaves = True
 
     def __init__(self, theme: Theme, place: Scenario, recording: Recording, title: str) -> None:
         super().__init__(theme, f"{place.title}, {title}", seed=recording.seed)

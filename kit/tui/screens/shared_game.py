@@ -58,6 +58,7 @@ class SharedScreen(WatchScreen):
     help_notes = (LETTER_NOTES[:3],)
     help_title = "Two players"
     has_instruments = False
+    escape_leaves = True
     player: int | None = None
     """The player at this screen; None watches."""
     join_command = ""

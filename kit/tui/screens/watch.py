@@ -83,6 +83,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
     """Whether keys drive here, so that the panel says how."""
     has_instruments: ClassVar[bool] = True
     """Whether a large screen has charts, messages and the program in its panel."""
+    escape_leaves: ClassVar[bool] = False
+    """Whether Esc ends the kit where there is no screen to go back to: no program of the student's hears it."""
     shows_program: ClassVar[bool] = True
     """Whether the program's code is what fills the rest of it."""
 
@@ -416,7 +418,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
     # Keys
 
     def _show_keys(self) -> None:
-        without = ("quit" if self._is_above_another else "back", *self._unavailable_actions)
+        without = ("quit" if self._has_way_back else "back", *self._unavailable_actions)
         line = footer(self.screen_actions, self.size.width or 80, without=without, labels=self.key_labels)
         self._rows("keys").show([line])
 
@@ -427,16 +429,22 @@ class WatchScreen(RowsScreen[None], DriveScreen):
 
     def is_drive_key(self, key: str) -> bool:
         """Esc goes back where there is a screen to go back to; else it is a key for the student's nodes."""
-        return super().is_drive_key(key) and not (key == "escape" and self._is_above_another)
+        return super().is_drive_key(key) and not (key == "escape" and self._has_way_back)
 
     @property
     def _is_above_another(self) -> bool:
         """Whether there is a screen to go back to."""
         return len(self.app.screen_stack) > 2
 
+    @property
+    def _has_way_back(self) -> bool:
+        return self._is_above_another or self.escape_leaves
+
     def action_back(self) -> None:
         if self._is_above_another:
             self.dismiss()
+        elif self.escape_leaves:
+            self.app.exit()
 
     def action_pause(self) -> None:
         paused = self.view is not None and self.view.paused
@@ -485,7 +493,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self.call_after_refresh(self._show)  # when everything has its new size
 
     def action_help(self) -> None:
-        without = (*(() if self._is_above_another else ("back",)), *self._unavailable_actions)
+        without = (*(() if self._has_way_back else ("back",)), *self._unavailable_actions)
         self.app.push_screen(
             HelpDialog(self.help_title, self.screen_actions, *self.help_notes, without=without)
         )

@@ -240,6 +240,26 @@ def test_a_reference_drive_says_how_far_it_is_and_is_driven_once(monkeypatch: py
     assert references.reference_recording(FIRST, pytest.fail) is recording
 
 
+def test_a_best_drive_that_does_not_run_again_gives_its_place_to_a_slower_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = tmp_path / "board"
+    monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(board))
+    workspace = open_workspace(tmp_path / "desk")
+    (slow, slower), (best, quicker) = keys_drive(FIRST), drive_tidily(FIRST)
+    of_another_kit = replace(quicker, poses=quicker.poses + 0.001)
+    with ProgressJournal(workspace.folder) as progress:
+        record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(best, of_another_kit)])
+        join_leaderboard(progress, workspace, "Ada")
+        assert leaderboard.read_entries(board, [FIRST]) == []
+        records = [
+            record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(slow, slower)]) for _ in range(2)
+        ]
+    assert [each.replaces for each in records] == [True, False], "told once"
+    (entry,) = leaderboard.read_entries(board, [FIRST])
+    assert entry.seconds == slow.seconds > best.seconds
+
+
 def test_classmates_who_joined_leave_ghosts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     board = tmp_path / "board"
     monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(board))

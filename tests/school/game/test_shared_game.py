@@ -198,7 +198,9 @@ def test_who_leaves_has_lost(race: tuple[Session, SharedGame]) -> None:
     until(session, 0.1)
     game.remove_player(1)
     assert game.state.phase is SharedPhase.WAITING  # it had not begun: another may come
+    assert game.state.has_left, "the host is told"
     game.start()
+    assert not game.state.has_left
     until(session, COUNTDOWN + 0.1)
     game.remove_player(1)
     assert (game.state.phase, game.state.winner, game.state.has_left) == (SharedPhase.OVER, 0, True)

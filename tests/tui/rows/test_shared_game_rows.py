@@ -39,6 +39,9 @@ def test_a_rematch_is_offered_and_asked_for(me: int | None, before: str, after: 
 def test_who_wins_because_the_other_one_has_left_is_told_so(me: int | None) -> None:
     assert "Ben has left" in said(replace(OVER, has_left=True), me)
     assert "has left" not in said(OVER, me)
+    waits = replace(OVER, phase=SharedPhase.WAITING, winner=None)
+    assert "Ben has left. Waiting" in said(replace(waits, has_left=True), me)
+    assert "has left" not in said(waits, me)
 
 
 @pytest.mark.parametrize(

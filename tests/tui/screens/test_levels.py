@@ -556,6 +556,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
         False,
         False,
         True,
+        False,
         9.0,
         Medal.BRONZE,
         LEVELS[1:4],
