@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -12,7 +13,7 @@ from typing import Final, Self
 from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
 from kit.plain_text import counted
-from kit.school.game.board import WALL, Board, Cell, History, free_cells, grid_rows
+from kit.school.game.board import WALL, Board, Cell, History, figure_rows, free_cells, grid_rows
 from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
@@ -147,7 +148,7 @@ class DevicesBoard(Board):
         ]
 
     def details(self, width: int) -> list[list[Row]]:
-        """What each laser sees, what it would see at the cursor, and what nothing sees yet."""
+        """What each laser sees, what one would see at the cursor, what nothing sees yet, and how many see each square."""
         task = self._task
         missed = sorted(set(task.places) - task.seen_from(self._lasers))
 
@@ -155,10 +156,20 @@ class DevicesBoard(Board):
             return row(f" {name:<8}", (" ".join(sorted(names)) or "none", "bold"))
 
         of_lasers = (told(f"{laser[0]},{laser[1]}", _visible_squares(task)[laser]) for laser in self._lasers)
+        lit = Counter(cell for laser in self._lasers for cell in _squares_seen_from(task, laser))
         here = told("cursor", _visible_squares(task)[self._cursor])
         return [
             [row(("letters in sight of", "dim")), here, *of_lasers],
             [row(("letters that nothing sees", "dim")), row(f" {' '.join(missed) or 'none'}")],
+            figure_rows(
+                "lasers that see each square", task.grid, {cell: str(count) for cell, count in lit.items()}
+            ),
+        ]
+
+    def curve(self) -> tuple[str, Sequence[float]]:
+        counts = range(1, len(self._lasers) + 1)
+        return "letters seen after each laser", [
+            len(self._task.seen_from(self._lasers[:count])) for count in counts
         ]
 
 
