@@ -20,6 +20,8 @@ from kit.tui.rows.medal_signs import NO_STAR, STAR
 
 LEAST_LEAD: Final = 0.5
 """Of a chart's scale [s]."""
+LEAST_SPEED_ROWS: Final = 4
+"""Of a chart of the speed with its title."""
 HIGHEST_LEAD: Final = 15
 """Rows of a chart."""
 RUN_OF_THE_DAY: Final = "this run counts; what follows is practice"
@@ -111,11 +113,12 @@ def lead_rows(leads: Sequence[float], width: int, room: int) -> list[Row]:
     return [row(" ", *each) for each in stretched_chart(title, note, leads, width - MARGIN, LEAST_LEAD, rows)]
 
 
-def speed_rows(speeds: Sequence[float], width: int) -> list[Row]:
-    """A chart of the speed of a drive [m/s], from its beginning to its end."""
-    if len(speeds) < 2:
+def speed_rows(speeds: Sequence[float], width: int, room: int) -> list[Row]:
+    """A chart of the speed of a drive [m/s], from its beginning to its end, as high as ``room`` rows allow; none for fewer than
+    ``LEAST_SPEED_ROWS``."""
+    if len(speeds) < 2 or room < LEAST_SPEED_ROWS:
         return []
-    chart = stretched_chart("speed", "m/s", speeds, width - MARGIN, LEAST_LEAD, CHART_ROWS)
+    chart = stretched_chart("speed", "m/s", speeds, width - MARGIN, LEAST_LEAD, min(CHART_ROWS, room - 1))
     return [row(" ", *each) for each in chart]
 
 

@@ -19,7 +19,7 @@ from textual.screen import ModalScreen
 
 from kit.arrays import FloatArray
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import MARGIN, Row, broken, row, row_width, side_by_side
+from kit.document.rows import MARGIN, Row, broken, row, row_text, row_width, side_by_side
 from kit.render.role_looks import PEN_ROLES
 from kit.render.roles import Role
 from kit.render.scene import PenStroke, Scene, ScenePath
@@ -287,7 +287,9 @@ class DriveResultScreen(ModalScreen[Wish]):
         room = self._room - below
         if room - len(self._photo_finish) >= max(LEAST_BESIDE_ROWS, len(rows)):
             room -= len(self._photo_finish)
-        return [*rows, *[row()] * (min(max(LEAST_BESIDE_ROWS, room), MOST_BESIDE_ROWS) - len(rows))]
+        blank = min(max(LEAST_BESIDE_ROWS, room), MOST_BESIDE_ROWS) - len(rows)
+        speed = drive_end_rows.speed_rows(self._speeds, LEFT, blank)
+        return [*rows, *speed, *[row()] * (blank - len(speed))]
 
     @property
     def _ladder_below(self) -> list[Row]:
@@ -321,7 +323,10 @@ class DriveResultScreen(ModalScreen[Wish]):
         before, finish, needed = self._before_finish, self._photo_finish, self._needed
         rows = [*before, *finish, *self._after_finish, *needed]
         if (room := self._room - len(rows)) >= 0:
-            speed = drive_end_rows.speed_rows(self._speeds, WIDTH - MARGIN)
+            is_told = self.has_class("-beside") and any(
+                "speed" in row_text(each) for each in self._beside_map
+            )
+            speed = drive_end_rows.speed_rows(self._speeds, WIDTH - MARGIN, 0 if is_told else room)
             lead = drive_end_rows.lead_rows(
                 self._leads, WIDTH - MARGIN, max(CHART_ROWS + 2, room - len(speed))
             )

@@ -15,7 +15,7 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
-from kit.document.rows import row_width
+from kit.document.rows import row_text, row_width
 from kit.learning.authoring.new_task import new_task_file
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.mapmaking.map_drawing import read_drawing
@@ -33,6 +33,7 @@ from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui import flourish
 from kit.tui.app import KitApp
+from kit.tui.rows.drive_end_rows import LEAST_SPEED_ROWS
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.screens import level_result
 from kit.tui.screens import levels as levels_module
@@ -710,6 +711,27 @@ def test_a_new_medal_has_a_flourish_that_any_key_ends_unless_motion_is_reduced(
         assert dialog._world.visible
 
     play(scene, progress, tmp_path / "desk", size)
+
+
+@pytest.mark.parametrize("rules", [(), tuple(ExtraRule)])
+def test_rows_beside_a_small_map_show_the_speed_or_the_rungs_and_nothing_twice(
+    progress: ProgressJournal, tmp_path: Path, rules: tuple[ExtraRule, ...]
+) -> None:
+    workspace = prepare_workspace(tmp_path / "desk")
+    result = result_of(workspace, progress)
+    plain = replace(result.record, rules=rules, new_rules=(), unlocked=(), belt="", following=None)
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        dialog = DriveResultScreen(screen._theme, replace(result, record=plain), workspace)
+        await screen.app.push_screen(dialog)
+        await pilot.press("enter")
+        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._revealed))
+        blank = [each for each in dialog._beside_map if not row_text(each)]
+        assert len(blank) < LEAST_SPEED_ROWS
+        assert flat(screen.app).count("m/s") <= 1
+        assert flat(screen.app).count(" master ") == 1
+
+    play(scene, progress, tmp_path / "desk")
 
 
 def test_on_80_columns_no_key_of_the_levels_is_missing_and_the_stars_are_seen(
