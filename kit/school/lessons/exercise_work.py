@@ -22,7 +22,7 @@ from kit.school.lessons.checking import (
     untouched_files,
 )
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.reading import exercise_scene
+from kit.school.lessons.reading import exercise_criteria, exercise_scene
 from kit.school.lessons.records import Exercise, LessonScene
 from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
 
@@ -84,6 +84,11 @@ class ExerciseAttempt:
     def scene(self) -> LessonScene | None:
         """The world in which the program is checked first; None where it drives in none."""
         return exercise_scene(self.exercise)
+
+    @cached_property
+    def criteria(self) -> list[tuple[str, float]]:
+        """What the check looks at, with the points of each."""
+        return exercise_criteria(self.exercise)
 
     def edited_lines(self) -> tuple[str, ...]:
         """The file to edit as it was read last; empty where it cannot be read."""

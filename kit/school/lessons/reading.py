@@ -17,6 +17,7 @@ from kit.learning.grid.grid_world import GridMapError, GridRewards, GridWorld
 from kit.learning.grid.registry import GRID_LEARNERS
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
+from kit.results.grading_result import Visibility
 from kit.school.lessons.markdown import markdown_to_markup
 from kit.school.lessons.own_learners import OWN_LEARNERS
 from kit.school.lessons.records import (
@@ -269,6 +270,23 @@ def exercise_scene(exercise: Exercise) -> LessonScene | None:
             return LessonScene(trial.name("place"), case, "", 1, trial.number("time", 10.0, above=0))
     except WorldError:
         return None
+
+
+def exercise_criteria(exercise: Exercise) -> list[tuple[str, float]]:
+    """The titles of what the check looks at, each with its points, in the language of the lesson; without what is not shown to
+    students, and none where the assignment cannot be read, which its check tells."""
+    try:
+        with open_document(exercise.folder / ASSIGNMENT_FILE, is_partial=True) as section:
+            shown = [
+                each
+                for each in section.sections("checks", ())
+                if each.text("visibility", Visibility.VISIBLE.value) == Visibility.VISIBLE
+                and each.has("title")
+            ]
+            told = [(each.name("title"), each.number("points", 0.0, minimum=0)) for each in shown]
+    except WorldError:
+        return []
+    return [(exercise.words.get(" ".join(title.split()), title), points) for title, points in told]
 
 
 def read_outcomes(folder: Path | None = None) -> Mapping[str, str]:

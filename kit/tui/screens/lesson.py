@@ -15,7 +15,7 @@ from textual.containers import Container
 
 from kit.dialogue.dialogue import Dialogue, Panel
 from kit.dialogue.effects import Remark
-from kit.document.blocks import Block, Text, Tone
+from kit.document.blocks import Block, Marked, Picture, Text, Tone, ToneText, labelled_table
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width
 from kit.inspection.sockets import sockets_folder
@@ -26,7 +26,7 @@ from kit.school.lessons.exercise_work import ExerciseAttempt
 from kit.school.lessons.glossary import lesson_words
 from kit.school.lessons.lesson_dialogue import Drive, Edit, EditHere, LessonDialogue, Replay, RunCommand
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.records import LearningScene, LessonStep
+from kit.school.lessons.records import LearningScene, LessonStep, StepKind
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.tui.input.drive import DriveState
@@ -260,6 +260,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
             panels=self._panels(),
             page_width=width,
+            aids=self._aids() if lines and is_roomy else (),
         )
         self._page.show(content, room - self._editor_rows(room), layout)
 
@@ -285,6 +286,21 @@ class LessonScreen(DialogueScreen, DriveScreen):
         panels = [Panel("steps", (lesson_rows.steps_table(progress, here, first),))]
         with suppress(WorldError, FileNotFoundError):  # it is told where the glossary is opened
             panels += [Panel("words", words)] if (words := lesson_words(lesson.name)) else []
+        return panels
+
+    def _aids(self) -> list[Panel]:
+        """What is shown below a file that leaves room: what its check looks at, until it has, and the step to read before it."""
+        work, here = self.dialogue.work, self.dialogue.step
+        panels = []
+        if work is not None and work.report is None and work.criteria:
+            rows = [(title, ToneText(f"{points:g}", Tone.DIM)) for title, points in work.criteria]
+            panels.append(Panel("what is checked, and its points", (labelled_table(rows, is_tight=True),)))
+        before = self.dialogue.session.lesson.steps[: here.number - 1]
+        read = next((each for each in reversed(before) if each.kind is StepKind.EXPLAIN), None)
+        if read is not None:
+            picture: list[Block] = [Picture(tuple(read.picture.splitlines()))] if read.picture else []
+            told = (*picture, Marked(self.dialogue.with_paths(read.text)))
+            panels.append(Panel(f"step {read.number}: {read.title}", told))
         return panels
 
     def _numbered(self, lines: Sequence[str]) -> list[Row]:

@@ -97,6 +97,8 @@ class LessonContent:
     file_title: str = ""
     file_line: int = 0
     """The line of it to look at first, counted from 0."""
+    aids: Sequence[Panel] = ()
+    """Below the file, as far as it leaves room."""
     log: Sequence[Row] = ()
     """What the student's program printed."""
     panels: Sequence[Panel] = ()
@@ -241,7 +243,10 @@ class LessonPage(Container):
         top = max(0, min(content.file_line - room // 3, len(content.file) - room))
         more = lines_shown(top, min(room, len(content.file)), len(content.file))
         head = row((content.file_title, "bold"), (f"  {more}", "dim"))
-        work.show([head, *(fitted(each, work.size.width) for each in content.file[top : top + room])])
+        shown = [head, *(fitted(each, work.size.width) for each in content.file[top : top + room])]
+        columns = min(work.size.width - MARGIN, TEXT_WIDTH)
+        left = work.size.height - len(shown) - 1
+        work.show([*shown, *(panel_rows(content.aids, columns, left) if columns >= LEAST_ASIDE else [])])
 
     def scroll_words(self, lines: int) -> None:
         """Scrolls by lines, at most by a page so that none is skipped; by more than there are, to the end."""
