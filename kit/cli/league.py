@@ -128,8 +128,11 @@ def new(folder: Path, title: str, races: tuple[str, ...], tag: tuple[str, ...], 
 @click.option("--controller", help="Controller name, or a Python file with a ROS 2 node.")
 @click.option("--agent", help="Name of a training run, or a policy file.")
 @click.option("--name", help="Name of the entry (default: that of the file or the run).")
+@click.option("--keep", is_flag=True, help="Keep the program that is entered as NAME-1, a rival to beat.")
 @click.pass_context
-def submit(context: click.Context, controller: str | None, agent: str | None, name: str | None) -> None:
+def submit(
+    context: click.Context, controller: str | None, agent: str | None, name: str | None, keep: bool
+) -> None:
     """Enter a program or an agent, or renew your entry of that name."""
     from kit.school.game.league import entries
 
@@ -146,7 +149,11 @@ def submit(context: click.Context, controller: str | None, agent: str | None, na
         except (LookupError, OSError) as error:
             messages.fail(messages.describe_error(error))
         league.programme()
-        entries.submit(league.folder, name or own_name, program)
+        if keep:
+            rival = entries.renew_beside_former(league.folder, name or own_name, program)
+            messages.say(f"{rival} is what {name or own_name} was until now.")
+        else:
+            entries.submit(league.folder, name or own_name, program)
         messages.say(f"{name or own_name} is entered. `kit league run` drives its matches.")
 
 

@@ -21,7 +21,7 @@ from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, at_both_edges, fitted, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
-from kit.school.game.league.entries import LeagueError, program_of_agent, submit
+from kit.school.game.league.entries import LeagueError, program_of_agent, renew_beside_former, submit
 from kit.school.game.league.league import League
 from kit.school.game.league.league_blocks import (
     KEYS,
@@ -47,7 +47,7 @@ from kit.workspace import Workspace
 WIDE: Final = 110
 """Columns from which the matches stand beside the standings."""
 STANDINGS_WIDTH: Final = 68
-GRID_SIGNS: Final = "+ won  - lost  = drawn"
+GRID_SIGNS: Final = "+ won, - lost, = drawn"
 LEAST_MAP_ROWS: Final = 12
 """Rows without which the levels' maps are not shown."""
 
@@ -117,6 +117,23 @@ class LeagueScreen(RowsScreen[None]):
         if self.is_attached:
             self._show()
             self._draw_maps()
+
+    @work(exclusive=True, group="read")
+    async def _read_driven(self) -> None:
+        """Shows what has been driven meanwhile; who is chosen stays chosen, and so does the match."""
+        try:
+            standings = await to_thread(read_standings, self._league)
+        except LeagueError:
+            return  # what reads everything again at the end tells why
+        name = self._entrants[self._at] if self._chosen is not None else ""
+        jobs = None if self._match is None else self._matches[self._match].jobs
+        self._standings = standings
+        self._chosen = self._entrants.index(name) if name in self._entrants else None
+        if jobs is not None:
+            found = (number for number, each in enumerate(self._matches) if each.jobs == jobs)
+            self._match = next(found, None)
+        if self.is_attached:
+            self._show()
 
     def _show_so_far(self, standings: Standings) -> None:
         """Shows what has been read, from the thread that reads; ends that where the screen has been left."""
@@ -282,13 +299,26 @@ class LeagueScreen(RowsScreen[None]):
                 program = programs[name].file.read_bytes()
             else:
                 program = await to_thread(program_of_agent, name, self._workspace.runs)
-            await to_thread(submit, self._league.folder, name, program)
+            enter = submit if await self._replaces(name, program) else renew_beside_former
+            await to_thread(enter, self._league.folder, name, program)
         except (LeagueError, OSError) as error:
             self.app.push_screen(MessageDialog("Not entered", str(error)))
             return
         await self._read_now(f"{name} is entered.")
         if self._league.is_mine:
             self.action_run_matches()
+
+    async def _replaces(self, name: str, program: bytes) -> bool:
+        """Whether a program takes the place of the one that is entered under its name; asks where that is another one."""
+        entries = await to_thread(self._league.entries)
+        if not any(each.name == name and each.is_mine and each.differs_from(program) for each in entries):
+            return True
+        choices = [
+            PickerItem("replace", "replace it"),
+            PickerItem("keep", "keep it", "it stays as an entry of its own, a rival to beat"),
+        ]
+        picked = await self.app.push_screen_wait(Picker(f"Another {name} is entered. What of that?", choices))
+        return picked != "keep"
 
     @work(group="run")
     async def action_run_matches(self) -> None:
@@ -305,8 +335,7 @@ class LeagueScreen(RowsScreen[None]):
                 nonlocal done
                 done += 1
                 self.app.call_from_thread(self._show_count, done, len(keys))
-                if done < len(keys):  # what is driven is seen at once
-                    self.app.call_from_thread(self._read)
+                self.app.call_from_thread(self._read_driven)
 
             if keys:
                 self._show_count(0, len(keys))
@@ -323,6 +352,8 @@ class LeagueScreen(RowsScreen[None]):
 
     def _show_count(self, done: int, count: int) -> None:
         self._driving = f"Driving: {done} of {count}. Who leaves goes on later." if done < count else ""
+        if not done:
+            self._note = ""
         self._show()
 
     def _show_note(self, note: str) -> None:

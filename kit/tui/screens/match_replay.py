@@ -89,6 +89,10 @@ class MatchReplayScreen(ReplayScreen):
         scene = super()._newest_scene()
         if self.view is None:
             return scene
+        if self._match.is_tag:  # there is no target to drive to
+            return replace(
+                scene, targets=(), bodies=tuple(each for each in scene.bodies if not each.is_target)
+            )
         marks = [
             SceneMark(x, y, self._letter, Role.GHOST_OTHER)
             for ghost in self._ghosts

@@ -20,6 +20,7 @@ from kit.school.game import leaderboard, references
 from kit.school.game.daily import daily_level, today
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, load_ghosts, load_reference_ghost
+from kit.school.game.league.house import house_programs
 from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import (
@@ -186,6 +187,9 @@ def test_every_controller_of_the_kit_and_its_copies_earn_nothing(tmp_path: Path)
         assert facts_of_program(controller.file).is_shipped
         copy.write_text(f"# my own work\n{controller.file.read_text()}")
         assert facts_of_program(copy).is_shipped, controller.name
+    for program in house_programs().values():
+        copy.write_bytes(program)
+        assert facts_of_program(copy).is_shipped, "of the league's house"
     copy.write_text('"""Two lines."""\n\nx = 1  # one\n# not this one\ny = 2\n')
     facts = facts_of_program(copy)
     assert not facts.is_shipped

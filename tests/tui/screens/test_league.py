@@ -30,6 +30,13 @@ def test_an_empty_league_says_how_to_enter_and_a_program_enters_by_a_key(tmp_pat
         await pilot.press("enter")
         await seen(pilot, "mine is entered.")
         await seen(pilot, "drives and games are still to be run")
+        (workspace.controllers / "mine.py").write_bytes(LASER + b"second = True\n")
+        await pilot.press("e")
+        await seen(pilot, "Which of yours enters")
+        await pilot.press("enter")
+        await seen(pilot, "Another mine is entered")
+        await pilot.press("down", "enter")
+        await until(pilot, lambda: "mine-1" in {each.name for each in league.entrants()}, "the rival")
 
     stage(lambda theme: LeagueScreen(theme, league, workspace), scene)
 
@@ -69,7 +76,7 @@ def test_from_the_standings_to_a_match_and_its_replay(tmp_path: Path, size: tupl
         await seen(pilot, "laser against stands")
         await seen(pilot, "the robot: laser   the letter S: stands")
         await pilot.press("3")
-        await seen(pilot, "laser won as the only one to arrive")
+        await seen(pilot, "laser won: only the winner arrived")
         await pilot.press("escape")
         await seen(pilot, "Matches of laser")
         await pilot.press("escape")

@@ -71,6 +71,10 @@ class Entry:
         """Whether it comes with the kit, and so takes no place."""
         return bool(self.house_program)
 
+    def differs_from(self, program: bytes) -> bool:
+        """Whether another program has other code, not only other comments or another layout."""
+        return self.code != _driver_and_code(program)[1]
+
     @property
     def program(self) -> ControllerFile:
         return ControllerFile(self.name, self.file, controller_title(self.file))
@@ -198,6 +202,23 @@ def submit(folder: Path, name: str, program: bytes) -> Path:
     except OSError as error:
         raise LeagueError(f"{file} cannot be written ({error.strerror}).") from None
     return file
+
+
+def renew_beside_former(folder: Path, name: str, program: bytes) -> str:
+    """Renews one's entry of a name and keeps its former program as an entry of its own, a rival to beat. Returns the rival's name,
+    the first of ``NAME-1``, ``NAME-2``, ... that is free. Raises LeagueError."""
+    entries = read_entries(folder)
+    former = find_entry(entries, name)
+    taken = {each.name.casefold() for each in entries}
+    names = (f"{name[:28]}-{number}" for number in range(1, MAX_ENTRIES + 2))
+    rival = next(each for each in names if each.casefold() not in taken)
+    try:
+        content = former.file.read_bytes()
+    except OSError as error:
+        raise LeagueError(f"{former.file}: {error.strerror}.") from None
+    submit(folder, name, program)
+    submit(folder, rival, content)
+    return rival
 
 
 def withdraw(folder: Path, name: str) -> None:

@@ -15,7 +15,7 @@ from kit.school.game.two_players import TAG_RULE
 TEXT = CellStyle.TEXT
 MOST_OPPONENTS: Final = 4
 """Of an entrant, in the table of its matches by level."""
-HOUSE: Final = f"{join_names(tuple(SPEEDS))}, the programs of the house, which everybody meets; then those that others enter."
+HOUSE: Final = f"{join_names(tuple(SPEEDS))}, the programs of the house, which everybody meets, and whatever others enter."
 
 
 class LeagueWords(NamedTuple):
@@ -29,13 +29,13 @@ class LeagueWords(NamedTuple):
 
 COMMANDS: Final = LeagueWords(
     "`kit league submit --controller FILE` enters a program of yours, `--agent RUN` an agent that you trained.",
-    "A copy of your program with a change will do: enter it with `--name OTHER`.",
+    "Submit with `--keep`, and your former program stays as a rival; or enter another one with `--name OTHER`.",
     "`kit league run`",
     "`kit league replay NUMBER` shows one",
 )
 KEYS: Final = LeagueWords(
     "e enters one of your programs, or an agent that you trained.",
-    "A copy of your program with a change will do, under another name in ~/robot-kit/controllers.",
+    "Enter a changed program again, and the former one can stay as a rival.",
     "t",
     "Enter opens an entrant's matches, and replays one",
 )
@@ -93,7 +93,7 @@ def rules_blocks(programme: Programme, words: LeagueWords) -> list[Block]:
         ("Races", f"{races}: {alone}") if races else None,
         ("Tag", f"{tag}: {together}") if tag else None,
         ("Enter", words.enter),
-        ("Opponents", HOUSE if programme.has_house else words.opponent),
+        ("Opponents", f"{HOUSE} {words.opponent}" if programme.has_house else words.opponent),
         ("Then", f"{words.run} drives the matches; ratings follow from who beat whom. {words.watch}."),
     ]
     return [labelled_table(rule for rule in rules if rule is not None)]
@@ -161,7 +161,8 @@ def match_sentence(match: Match) -> str:
 
 def result_sentence(match: Match) -> str:
     """Who won a match, and by what."""
-    ended = "Draw" if match.winner is None else f"{match.winner.name} won {match.by}"
+    gap = " " if match.by.startswith("by ") else ": "
+    ended = "Draw" if match.winner is None else f"{match.winner.name} won{gap}{match.by}"
     did = "; ".join(
         f"{entry.name}: {detail}" for entry, detail in zip(match.entrants, match.details, strict=True)
     )

@@ -47,7 +47,7 @@ class Match:
     points: float
     """Of the first: 1 it won, 0 it lost, 0.5 a draw."""
     by: str
-    """What decided it, in words that follow on who won; empty for a draw."""
+    """What decided it, such as ``by 0.52 s``; empty for a draw."""
     details: tuple[str, str]
     """What each did, in words."""
     jobs: tuple[LeagueJob, ...]
@@ -206,11 +206,15 @@ def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, Judge
     if is_draw:
         by = ""
     elif first[0] != second[0]:
-        by = "as the only one to arrive"
+        by = "only the winner arrived"
     elif first[0]:
-        by = "because the other program failed"
+        by = "the other's program failed"
     else:
-        by = f"by {abs(first[2] - second[2]):.2f} s" if first[1] == second[1] else "without a bump"
+        by = (
+            f"by {abs(first[2] - second[2]):.2f} s"
+            if first[1] == second[1]
+            else "only the winner touched nothing"
+        )
     entrants = jobs[0].entrants[0], jobs[1].entrants[0]
     is_same = all(each.is_same_platform for each in judged)
     return Match(jobs[0].level, False, entrants, points, by, (details[0], details[1]), jobs, is_same)
@@ -227,7 +231,7 @@ def tag_match(job: LeagueJob, game: JudgedJob) -> Match:
         points = float(game.winner == 0)
     by = f"by {abs(game.scores[0] - game.scores[1]):.1f} s"
     if first_failed != second_failed:
-        by = "because the other program failed"
+        by = "the other's program failed"
     remarks = (*game.remarks, "", "")
     details = [
         remark or f"{seconds:.1f} s against it" for remark, seconds in zip(remarks, game.scores, strict=False)

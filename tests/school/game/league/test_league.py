@@ -31,6 +31,7 @@ from kit.school.game.league.entries import (
     LeagueError,
     read_entries,
     record_holders,
+    renew_beside_former,
     submit,
     withdraw,
 )
@@ -286,6 +287,20 @@ def test_who_withdraws_takes_the_matches_along_and_a_new_program_drives_anew(dri
     assert read_standings(league).matches == ()
     with pytest.raises(LeagueError):
         withdraw(league.folder, "crashes")
+
+
+def test_a_former_program_stays_as_a_rival(tmp_path: Path) -> None:
+    league = make_league(tmp_path, laser=LASER)
+    assert renew_beside_former(league.folder, "laser", LASER + b"second = True\n") == "laser-1"
+    assert renew_beside_former(league.folder, "laser", LASER + b"third = True\n") == "laser-2"
+    programs = {each.name: each.file.read_bytes() for each in league.entrants()}
+    assert programs == {
+        "laser": LASER + b"third = True\n",
+        "laser-1": LASER,
+        "laser-2": LASER + b"second = True\n",
+    }
+    with pytest.raises(LeagueError):
+        renew_beside_former(league.folder, "nobody", LASER)
 
 
 def test_a_clock_that_was_set_back_changes_nothing(driven: League) -> None:
