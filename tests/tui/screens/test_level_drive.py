@@ -12,12 +12,15 @@ from textual.pilot import Pilot
 from kit.controllers import ControllerFile, find_controller, prepare_workspace
 from kit.document.rows import row
 from kit.learning.tasks.goals.target import REACH_TARGET
+from kit.run.session import Session
 from kit.school.game.daily import daily_level
+from kit.school.game.drive_commands import DriveCommand, ReferenceDrive
 from kit.school.game.ghosts import load_reference_ghost
 from kit.school.game.levels import find_level
 from kit.school.game.medal import RUNGS
 from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
+from kit.school.game.references import CommandPlayer
 from kit.school.game.starts import OWN_SEED
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
@@ -163,7 +166,12 @@ def test_the_help_of_a_drive_names_no_key_that_does_nothing(tmp_path: Path, driv
 
 def test_the_end_of_a_drive_that_does_not_arrive_says_what_was_achieved(tmp_path: Path) -> None:
     level = find_level("first-drive")
-    finish, _ = drive(level, OWN_SEED, lambda session: None)
+    twitch = ReferenceDrive((DriveCommand(10, 0.1, 0.0), DriveCommand(10, 0.0, 0.0)), 0.1)
+
+    def install(session: Session) -> None:
+        session.runner.participants.append(CommandPlayer(session, twitch))
+
+    finish, _ = drive(level, OWN_SEED, install)
     assert not finish.reached
     distance = level.targets[0][1] - level.find_scenario().starts[0].y
     assert finish.shortfall.startswith("0 of 2 targets, ")
