@@ -41,6 +41,8 @@ TAG_SECONDS: Final = 90.0
 STILL_SECONDS: Final = 3.0
 STILL_DISTANCE: Final = 0.3
 """A robot stands still once it has stayed for longer than this [s] within this distance of one place [m]."""
+CATCH_DISTANCE: Final = 0.1
+"""Who becomes the catcher catches nobody before it has moved so far [m]: else whoever stands beside it would be caught."""
 TAG_RULE: Final = (
     "Each second counts against the catcher, or against the one that is chased where that alone has stayed on one spot for "
     f"{STILL_SECONDS:.0f} s. Who has less after {TAG_SECONDS:.0f} s has won."
@@ -150,6 +152,9 @@ class SharedReferee(Observer):
         self._caught_ns = 0
         self._places: list[tuple[float, float]] = []
         """Where each robot was when it had last moved on; empty where that is not known yet."""
+        self._catcher_place = (0.0, 0.0)
+        self._has_moved = False
+        """Whether the catcher has moved since it became that."""
         self._moved_ns = [0] * PLAYERS
         self._winner: int | None = None
 
@@ -207,8 +212,14 @@ class SharedReferee(Observer):
         chased = 1 - self._catcher
         is_chased_alone_still = self._stands_still(poses) == [number == chased for number in range(PLAYERS)]
         self._scores[chased if is_chased_alone_still else self._catcher] += step
+        moved_m = math.dist(self._catcher_place, poses[self._catcher][:2])
+        self._has_moved = self._has_moved or moved_m >= CATCH_DISTANCE
         is_near = math.dist(poses[0][:2], poses[1][:2]) <= TAG_DISTANCE
-        if is_near and self._now_ns - max(self._caught_ns, self._since_ns) >= TAG_PAUSE * 1e9:
+        if (
+            is_near
+            and self._has_moved
+            and self._now_ns - max(self._caught_ns, self._since_ns) >= TAG_PAUSE * 1e9
+        ):
             self._catcher, self._caught_ns, self._places = chased, self._now_ns, []
         if seconds >= TAG_SECONDS:
             first, second = self._scores
@@ -219,6 +230,7 @@ class SharedReferee(Observer):
         """Whether each robot has stayed on one spot for too long."""
         if not self._places:
             self._places, self._moved_ns = [(each.x, each.y) for each in poses], [self._now_ns] * PLAYERS
+            self._has_moved, self._catcher_place = False, self._places[self._catcher or 0]
         for number, pose in enumerate(poses):
             if math.dist(self._places[number], pose[:2]) >= STILL_DISTANCE:
                 self._places[number], self._moved_ns[number] = (pose.x, pose.y), self._now_ns

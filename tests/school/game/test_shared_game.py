@@ -56,6 +56,7 @@ from kit.school.game.shared_sockets import (
     listen_for_guests,
 )
 from kit.school.game.two_players import (
+    CATCH_DISTANCE,
     COUNTDOWN,
     GUEST,
     STILL_DISTANCE,
@@ -219,6 +220,10 @@ def test_in_tag_who_is_caught_catches_and_less_time_wins(
     until(session, TAG_PAUSE)
     mine = game.state.poses[0]
     session.runner.call_service("move_model", GUEST, Pose(mine.x + 0.25, mine.y, 0.0))
+    until(session, 0.05)
+    assert game.state.catcher == 0, "who has not moved catches nobody"
+    moved = Pose(mine.x + 0.02, mine.y + CATCH_DISTANCE, mine.theta)
+    session.runner.call_service("move_model", game.robots[0], moved)
     until(session, 0.05)
     assert game.state.catcher == 1
     until(session, TAG_PAUSE - 0.1)
