@@ -36,33 +36,47 @@ def time_chart(values: Sequence[float], width: int, least: float, rows: int = CH
     # Two samples to a character where there are many.
     paired = [max(shown[i : i + 2], key=abs) for i in range(0, len(shown), 2)] if len(shown) > room else shown
     paired = [0.0] * (room - len(paired)) + paired[-room:]
-    largest = max((abs(value) for value in paired), default=0.0)
-    top = max(least, math.ceil(largest / least - 1e-9) * least)
+    top = _top(max((abs(value) for value in paired), default=0.0), least)
     if min(paired, default=0.0) > -0.05 * top:
         return _bar_rows(paired, top, rows, "")
     middle = rows // 2
-    upper = _bar_rows([max(value, 0.0) for value in paired], top, middle, "", has_zero=False)
+    return _two_sided(paired, top / middle, middle, rows - middle - 1)
+
+
+def _top(largest: float, least: float) -> float:
+    """The end of a scale in steps of ``least``."""
+    return max(least, math.ceil(largest / least - 1e-9) * least)
+
+
+def _two_sided(values: Sequence[float], step: float, above: int, below: int) -> list[Row]:
+    """Bars up and down from an axis, each row of them ``step`` high."""
+    raised = [max(value, 0.0) for value in values]
+    upper = _bar_rows(raised, step * above, above, "", has_zero=False) if above else []
     lower = [
         row(
-            (f"{-top:<{CHART_LABEL}.1f}" if number == rows - middle - 2 else " " * CHART_LABEL, "dim"),
-            (
-                "".join(_downward_block(-value / top * (rows - middle - 1) - number) for value in paired),
-                "code",
-            ),
+            (f"{-step * below:<{CHART_LABEL}.1f}" if number == below - 1 else " " * CHART_LABEL, "dim"),
+            ("".join(_downward_block(-value / step - number) for value in values), "code"),
         )
-        for number in range(rows - middle - 1)
+        for number in range(below)
     ]
-    axis = row(("   0  ", "dim"), ("".join("─" if value == 0.0 else "━" for value in paired), "dim"))
+    axis = row(("   0  ", "dim"), ("".join("─" if value == 0.0 else "━" for value in values), "dim"))
     return [*upper, axis, *lower]
 
 
 def stretched_chart(
     title: str, note: str, values: Sequence[float], width: int, least: float, rows: int
 ) -> list[Row]:
-    """A chart below its title of values from the first to the last, stretched over ``width`` columns."""
+    """A chart below its title of values from the first to the last, stretched over ``width`` columns, its axis where both
+    sides have the rows that they need."""
     bars = width - CHART_LABEL
     shown = [values[min(len(values) - 1, bar * len(values) // bars)] for bar in range(bars)]
-    return [ruled_title(title, width, note), *time_chart(shown, width, least, rows)]
+    high, low = max(0.0, *shown), -min(0.0, *shown)
+    if low <= 0.05 * _top(high, least):
+        return [ruled_title(title, width, note), *_bar_rows(shown, _top(high, least), rows, "")]
+    above = min(rows - 2, math.ceil((rows - 1) * high / (high + low)))
+    below = rows - 1 - above
+    step = max(least / (rows - 1), low / below, high / above if above else 0.0)
+    return [ruled_title(title, width, note), *_two_sided(shown, step, above, below)]
 
 
 def _downward_block(share: float) -> str:

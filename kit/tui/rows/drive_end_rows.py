@@ -46,7 +46,7 @@ def finish_sentence(finish: RaceFinish) -> str:
 
 def ending(level: GameLevel, finish: RaceFinish, width: int) -> list[Row]:
     """What came of a drive that has reached its goal, in the level's story."""
-    return [row(f"   {each}") for each in wrap(level.ending, width) if each and finish.reached]
+    return [row(f" {each}") for each in wrap(level.ending, width) if each and finish.reached]
 
 
 def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord, width: int) -> list[Row]:
@@ -108,7 +108,7 @@ def lead_rows(leads: Sequence[float], width: int, room: int) -> list[Row]:
     """A chart of how far ahead of the reference a drive was [s], from its beginning to its end, as high as ``room`` rows allow."""
     if len(leads) < 2:
         return []
-    rows = min(HIGHEST_LEAD, max(CHART_ROWS, (room - 2) // 2 * 2 + 1))  # an odd number: zero is in the middle
+    rows = min(HIGHEST_LEAD, max(CHART_ROWS, room - 1))
     title, note = "ahead of the reference", "s, down is behind"
     return [row(" ", *each) for each in stretched_chart(title, note, leads, width - MARGIN, LEAST_LEAD, rows)]
 

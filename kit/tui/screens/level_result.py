@@ -61,6 +61,8 @@ WIDTH: Final = 74
 FINISH_WIDTH: Final = 40
 FINISH_ROWS: Final = 3
 """Columns of the photo finish, and how many are in it."""
+FIXED_ROWS: Final = 2
+"""Of a result: who drove, and the empty row below how it ended."""
 ROWS_AROUND: Final = 2
 """Of the result: a note and the keys."""
 NARROW: Final = 80
@@ -155,12 +157,16 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     @property
     def _fixed(self) -> list[Row]:
-        """The rows above those that appear: who drove, and how it ended."""
+        """The rows above those that appear: who drove, how it ended, and what came of it, where there is room for that."""
         result, width = self._result, min(WIDTH, self.app.size.width)
-        sentence = row(f" {drive_end_rows.finish_sentence(result.finish)}")
+        sentence = broken(row(f" {drive_end_rows.finish_sentence(result.finish)}"), width)
+        ending = drive_end_rows.ending(result.level, result.finish, width - MARGIN)
+        others = (sentence, self._above, self._earned, self._times, self._ladder, self._won, ending)
+        has_room = sum(map(len, others)) + FIXED_ROWS + ROWS_AROUND <= self.app.size.height
         return [
             row((f" {result.level.title}, {result.driver.phrase}", "bold")),
-            *broken(sentence, width),
+            *sentence,
+            *(ending if has_room else []),
             row(),
         ]
 
@@ -272,11 +278,8 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     @property
     def _after_finish(self) -> list[Row]:
-        """How the level's story ends, where there is room for that, and what was won besides, where it stands below."""
-        won = [] if self._is_won_beside else self._won
-        ending = drive_end_rows.ending(self._result.level, self._result.finish, WIDTH - MARGIN)
-        count = len(self._earned) + len(self._times) + len(self._ladder) + len(ending) + len(won)
-        return [*ending, *won] if count <= self._room else won
+        """What was won besides, where it stands below."""
+        return [] if self._is_won_beside else self._won
 
     @property
     def _beside_map(self) -> list[Row]:

@@ -15,7 +15,7 @@ from kit.ros.log import LoggingSeverity, LogRecord
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
-from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
+from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, stretched_chart, time_chart
 from kit.tui.rows.instrument_rows import (
     SpeedHistory,
     figure_rows,
@@ -163,6 +163,16 @@ def test_what_turns_right_goes_down() -> None:
     rows = texts(time_chart([-1.0] * 10, 46, 0.5))
     assert "█" in rows[-1]
     assert "█" not in rows[0]
+
+
+@every_case("values", [[0.0, -9.0, -12.0], [0.0, 3.0, -1.0], [0.0, 1.0, 2.0], [-1.0, -1.0], [0.0, 0.0]])
+def test_a_stretched_chart_gives_each_side_the_rows_that_it_needs(values: list[float]) -> None:
+    title, *rows = texts(stretched_chart("lead", "s", values, 46, 0.5, 7))
+    assert "lead" in title
+    assert len(rows) == 7
+    assert {len(line) for line in rows} == {46}
+    bars = sum(any(glyph in line for glyph in "▁▂▃▄▅▆▇█▀━") for line in rows)
+    assert bars >= 6 or not any(values)
 
 
 @every_case("theta", [-math.pi, math.pi, 3 * math.pi, math.radians(-179.6), math.radians(180.4)])
