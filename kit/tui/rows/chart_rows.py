@@ -73,10 +73,13 @@ def stretched_chart(
     high, low = max(0.0, *shown), -min(0.0, *shown)
     if low <= 0.05 * _top(high, least):
         return [ruled_title(title, width, note), *_bar_rows(shown, _top(high, least), rows, "")]
-    above = min(rows - 2, math.ceil((rows - 1) * high / (high + low)))
+
+    def step_of(above: int) -> float:
+        return max(least / rows, low / (rows - 1 - above), high / above if above else 0.0)
+
+    above = min(range(1 if high else 0, rows - 1), key=step_of)
     below = rows - 1 - above
-    step = max(least / (rows - 1), low / below, high / above if above else 0.0)
-    return [ruled_title(title, width, note), *_two_sided(shown, step, above, below)]
+    return [ruled_title(title, width, note), *_two_sided(shown, step_of(above), above, below)]
 
 
 def _downward_block(share: float) -> str:
