@@ -45,7 +45,8 @@ def image_camera(bounds: SceneBounds, width: int, height: int) -> Camera:
 def draw_image(scene: Scene, camera: Camera, colors: Mapping[Role, Color] = IMAGE_THEMES["light"]) -> Pixels:
     """The scene, by default on white paper; ``camera.columns`` x ``camera.rows`` pixels."""
     canvas = _ImageCanvas(camera, colors)
-    canvas.lines(scene.beams, Role.LIT_NEAR)
+    if scene.shows_beams:
+        canvas.lines(scene.beams, Role.LIT_NEAR)
     for path in scene.paths:
         canvas.lines(polyline(path.points), path_role(path))
     for number, trail in enumerate(scene.trails):

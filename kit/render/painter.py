@@ -9,7 +9,7 @@ import numpy as np
 from kit.arrays import BoolArray, FloatArray
 from kit.render import raster
 from kit.render.camera import Camera
-from kit.render.dot_canvas import NO_LINES, DotCanvas, ring_dots
+from kit.render.dot_canvas import DotCanvas, ring_dots
 from kit.render.encode import Encoder, Frame
 from kit.render.raster import Grid
 from kit.render.role_looks import nearest_pen_role
@@ -34,7 +34,7 @@ class Painter:
     What no robot of the scene fits through is drawn solid, where dots are fine enough to tell. So the two
     faces of a thin wall make one wall, instead of now two lines and now one.
 
-    ``shaded``: the floor, and what the lasers see of it where the scene has their beams, are backgrounds.
+    ``shaded``: the floor, and what the lasers see of it where the scene shows their beams, are backgrounds.
     """
 
     def __init__(self, encoder: Encoder, shaded: bool = False) -> None:
@@ -57,7 +57,7 @@ class Painter:
         floor = self._floor
         if scene.cells is not None:
             floor = canvas.draw_cells(scene.cells, marks_unknown=not self.shaded)
-        if not self.shaded:
+        if scene.shows_beams and not self.shaded:
             canvas.draw_lines(scene.beams, Role.BEAM, period=3)
         for path in scene.paths:
             canvas.draw_path(path)
@@ -65,8 +65,9 @@ class Painter:
             canvas.draw_lines(raster.polyline(stroke.points), nearest_pen_role(stroke.color))
         for number, trail in enumerate(scene.trails):
             canvas.draw_points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)])
-        surfaces = seen_surfaces(scene.beams) if self.shaded else NO_LINES
-        canvas.draw_hits(scene.hits, surfaces, self._faces if scene.cells is None else NO_FACES)
+        canvas.draw_hits(
+            scene.hits, seen_surfaces(scene.beams), self._faces if scene.cells is None else NO_FACES
+        )
         for target in scene.targets:
             canvas.draw_dots(self._ring(target, camera), Role.TARGET)
         for body in scene.bodies:
@@ -82,7 +83,8 @@ class Painter:
         sprites = SpriteLayer(frame, camera, self.encoder.symbols, scene.walls, self._wall_cells)
         sprites.draw_scene(scene)
         if self.shaded:
-            lit = lit_cells(scene.beams, camera, frame.fg == Role.WALL_HIT)
+            rays = scene.beams if scene.shows_beams else scene.beams[:0]
+            lit = lit_cells(rays, camera, frame.fg == Role.WALL_HIT)
             shades = shade_roles(floor, lit)
             shades[self._solid & (frame.fg == Role.TEXT)] = Role.FLOOR  # letters are to be read on a wall too
             np.copyto(frame.bg, shades, where=frame.bg == Role.EMPTY)

@@ -152,6 +152,8 @@ class Scene:
     """(m, 2): where laser rays ended. Rows that are not finite are left out."""
     beams: FloatArray = field(default_factory=partial(_no_rows, 4))
     """(m, 4): the rays themselves, from the laser to the hit."""
+    shows_beams: bool = True
+    """Whether the rays are drawn, not only what they see of the walls."""
     targets: tuple[Disc, ...] = ()
     trails: tuple[FloatArray, ...] = ()
     """One (k, 2) per robot, drawn as single dots: see ``kit.render.scene.Trail``."""

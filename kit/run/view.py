@@ -69,7 +69,6 @@ class _Snapshot:
     scans: tuple[LatestScan, ...]
 
 
-NO_BEAMS = np.empty((0, 4))
 LASER_DIRECTIONS = 120
 NO_LASER: FloatArray = np.full(LASER_DIRECTIONS, np.nan)
 
@@ -92,7 +91,7 @@ class ViewBuilder:
         self._trail = Trail()
         self._tick = 0
         self.shows_beams = False
-        """Whether views contain the laser's rays, not only where they end."""
+        """Whether views show the laser's rays, not only where they end."""
 
     def build(self) -> View:
         """The session as it is now; called in the thread that ticks."""
@@ -139,9 +138,8 @@ class ViewBuilder:
             ),
             strokes=tuple(stroke for addition in self._session.additions for stroke in addition.strokes),
             hits=np.concatenate([np.empty((0, 2)), *(scan.hits for scan in snapshot.scans)]),
-            beams=np.concatenate([np.empty((0, 4)), *(_beam_segments(scan) for scan in snapshot.scans)])
-            if self.shows_beams
-            else NO_BEAMS,
+            beams=np.concatenate([np.empty((0, 4)), *(_beam_segments(scan) for scan in snapshot.scans)]),
+            shows_beams=self.shows_beams,
             targets=(Disc(*case.target, case.target_radius),) if case else (),
             trails=(self._trail.points,),
             contacts=np.array(

@@ -74,13 +74,15 @@ LEFT: Final = 46
 LEAST_BESIDE_ROWS, MOST_BESIDE_ROWS = 9, 12
 """Of that map."""
 LEAST_MAP_ROWS: Final = 7
-"""Of the map below the result; where there are fewer it is left out."""
+"""Of the map below the result; where there are fewer it is left out. It comes there if it is larger than beside the result."""
 LADDER_COLUMNS: Final = 46
 """Columns of the ladder beside the next level."""
 NEXT_ROWS: Final = 7
 """Of the next level's picture."""
 SPEED_INTERVAL: Final = 0.1
 """Between two speeds of a chart [s]."""
+JUMP_SPEED: Final = 10.0
+"""No robot drives so fast [m/s]: it was put elsewhere."""
 QUICKER, SLOWER = 0.005, 0.03
 """A part of a drive is coloured as quicker than the ghost from this gain on, as slower from this loss on [s]."""
 
@@ -236,7 +238,8 @@ class DriveResultScreen(ModalScreen[Wish]):
         self.set_class(False, "-high")
         self.set_class(False, "-beside")
         rows = len(self._fixed) + len(self._above) + len(self._revealed) + ROWS_AROUND
-        is_high = width < WIDE and height >= rows + LEAST_MAP_ROWS
+        least = LEAST_MAP_ROWS if width < NARROW else MOST_BESIDE_ROWS + 1
+        is_high = width < WIDE and height >= rows + least
         self.set_class(is_high, "-high")
         self.set_class(NARROW <= width < WIDE and not is_high, "-beside")
         is_beside = self.has_class("-beside")
@@ -326,6 +329,8 @@ class DriveResultScreen(ModalScreen[Wish]):
         before, finish, needed = self._before_finish, self._photo_finish, self._needed
         rows = [*before, *finish, *self._after_finish, *needed]
         if (room := self._room - len(rows)) >= 0:
+            if self.app.size.width < WIDE and not self.has_class("-beside"):
+                return rows  # the room is the map's
             is_told = self.has_class("-beside") and any(
                 "speed" in row_text(each) for each in self._beside_map
             )
@@ -459,11 +464,14 @@ def leads_over_reference(result: DriveResult) -> list[float]:
 
 
 def speeds_of(result: DriveResult) -> list[float]:
-    """The speed of a drive [m/s] from tenth to tenth of a second, up to where it ended."""
-    step = max(1, round(SPEED_INTERVAL / result.recording.step_size))
-    places = _own_track(result)[: round(result.finish.seconds / result.recording.step_size) + 1 : step, :2]
+    """The speed of a drive [m/s] from tenth to tenth of a second, up to where it ended. Being put back to the start is none."""
+    tick_s = result.recording.step_size
+    places = _own_track(result)[: round(result.finish.seconds / tick_s) + 1, :2]
     distances = np.hypot(*np.diff(places, axis=0).T)
-    speeds: list[float] = (distances / (step * result.recording.step_size)).tolist()
+    distances[distances > JUMP_SPEED * tick_s] = 0.0
+    step = max(1, round(SPEED_INTERVAL / tick_s))
+    whole = distances[: len(distances) // step * step].reshape(-1, step)
+    speeds: list[float] = (whole.sum(axis=1) / (step * tick_s)).tolist()
     return speeds
 
 
