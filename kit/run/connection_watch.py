@@ -18,9 +18,8 @@ MAX_TOLD: Final = 20
 STANDS_NS: Final = 2_000_000_000
 """How long a connection is without another end before that is told [ns of simulated time]."""
 LOOK_INTERVAL_NS: Final = 500_000_000
-SENT_NOTHING: Final = (
-    "The program sends no speed: self.publisher.publish(command) sends one, a Twist on cmd_vel."
-)
+SENT_NOTHING: Final = "The program sends no speed."
+SENDS: Final = "A Twist on cmd_vel with linear.x or angular.z other than 0 moves the robot."
 
 
 class ConnectionWatch(Observer):
@@ -47,7 +46,7 @@ class ConnectionWatch(Observer):
         self._graph, self._names, self._tell = graph, names, tell
         self._commanders = names if commanders is None else commanders
         self._commands = commands
-        self._sent_nothing = f"{SENT_NOTHING} {way_out}".rstrip()
+        self._sent_nothing = " ".join(filter(None, (SENT_NOTHING, way_out, SENDS)))  # the end may be cut
         self._is_commanded = False
         self._since_ns: dict[str, int] = {}
         self._told: set[str] = set()

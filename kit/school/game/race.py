@@ -264,9 +264,10 @@ def middle_drive(finishes: Sequence[RaceFinish]) -> int:
 
 
 def open_race(
-    level: GameLevel, scenario: Scenario, controller: ControllerFile
+    level: GameLevel, scenario: Scenario, controller: ControllerFile, way_out: str = ""
 ) -> tuple[Session, RaceReferee, Recorder]:
-    """Opens the same race to be watched: the controller has started, and the first tick is still to come.
+    """Opens the same race to be watched: the controller has started, and the first tick is still to come. ``way_out``: how to
+    change there a program that sends no speed.
 
     The caller closes the session.
     """
@@ -274,7 +275,7 @@ def open_race(
     referee = RaceReferee(level, scenario)
     recorder = Recorder.for_scenario(scenario, session.runner.simulation)
     session.runner.observers += [referee, recorder]
-    session.watch_connections()
+    session.watch_connections(way_out)
     session.drive_with(controller)
     session.wait_until_driven()
     return session, referee, recorder

@@ -51,6 +51,8 @@ TWO_TEXTS: Final = 48
 """Columns of each of two texts beside a board."""
 MOST_CURVE_ROWS: Final = 14
 """Of a curve below a board."""
+UNSOLVED: Final = "   not solved yet; the answer is kept"
+"""After a check that earned no medal, where a figure does not tell what the next one asks for."""
 NEW: Final = " (new)"
 """After a medal that is better than those before."""
 MOST_TRIES: Final = 4
@@ -218,8 +220,9 @@ def puzzle_page(
     last: Sequence[Row] = (),
 ) -> list[Row]:
     """A puzzle below each other: what it asks for, its board, what the answer is worth. ``judgement``: or why there is none.
-    ``beside``, ``last``: parts that stand beside the board before and after the first of its details, those that fit there. A check changes no row's place. Where there are too few
-    rows, the story gives way first, then the sentence about the worth, then the task."""
+    ``beside``, ``last``: parts that stand beside the board before and after the first of its details, those that fit there. A
+    check changes no row's place. Where there are too few rows, the story gives way first, then the sentence about the worth, then
+    the task."""
     story, task, keys = _about_puzzle(challenge, board, width)
     worth, sentence = worth_now(judgement, width, check)
     around = sum(map(len, (story, task, keys, worth, sentence)))
@@ -376,7 +379,7 @@ def worth_now(
 ) -> tuple[list[Row], list[Row]]:
     """What the answer on a board is worth, with a bar from the naive answer to the best one; and a sentence about it. ``check``:
     what came of handing it in, which is told in as many rows."""
-    lead = ("now    " if check is None else "judged ", "dim")
+    lead = ("now    ", "dim") if check is None else ("judged ", "bold")
     problem = "" if check is None else check.problem
     if isinstance(judgement, str):
         sentence = _wrap_with_lead("      ", judgement, width, "dim") if judgement else []
@@ -386,7 +389,8 @@ def worth_now(
     rows = [
         row(lead, (MEDAL_SIGNS[medal] + " ", MEDAL_STYLES[medal]), (medal.title + NEW * is_new, "bold")),
     ]
-    if asked := next_medal(judgement):
+    told = UNSOLVED if check is not None and medal is Medal.NONE else ""
+    if asked := next_medal(judgement) or told:
         is_beside = row_width(rows[0]) + len(NEW) * (not is_new) + len(asked) <= width
         rows[-1:] = [row(*rows[0], asked)] if is_beside else [*rows, row("    ", asked)]
     comparison = judgement.comparison

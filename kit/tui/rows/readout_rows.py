@@ -120,8 +120,8 @@ def message_rows(record: LogRecord, width: int, most: int = 1) -> list[Row]:
     text = record.text.partition("\n")[0]
     style = _LOUD.get(record.severity.name, "")
     line = head + text
-    if len(line) <= width or most == 1:  # to the last letter for which there is room: a name may end there
-        lines = [line[:width]]
+    if len(line) <= width or most == 1:
+        lines = [line if len(line) <= width else f"{line[: max(0, width - 4)]} ..."]
     else:
         lines = wrap(text, width, head, " " * len(clock), most=most)
     first: StyledText = (lines[0][len(head) :], style)

@@ -56,7 +56,7 @@ from kit.tui.rows.level_card_rows import level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_pictures import ghost_driver, ghost_look, ghost_marks, ghost_paths
-from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
+from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish, edit_program
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.workspace import Workspace
@@ -66,8 +66,9 @@ if TYPE_CHECKING:
 
 
 ONE, TWO = "teleop", "teleop_pair"
+EDITS: Final = "e edits it."
 LETTER_NOTES: Final = (
-    ("R", "the reference"),
+    ("on the map: R", "the reference"),
     ("K  C  A", "your best so far by hand, by program, by agent"),
     ("other letters", "classmates who have joined the leaderboard"),
     ("D", "a dock: stand still for a second to charge"),
@@ -112,7 +113,7 @@ class LevelDrive(WatchScreen):
     shows_program = False
     screen_actions = ScreenActions(
         "level",
-        ("drive_keys", "stop_robot", "restart", "pause", "speed", "help", "back"),
+        ("drive_keys", "stop_robot", "restart", "edit_file", "pause", "speed", "help", "back"),
         ("ghosts", "agent_view", "laser_map", "share", "drive_mode", "zoom", *VIEW_IDS, "quit"),
         drives=True,
     )  # fmt: skip
@@ -222,7 +223,9 @@ class LevelDrive(WatchScreen):
             self._facts = facts_of_program(
                 self._race_program.file
             )  # it may have been edited since the last drive
-        session, self._referee, self._recorder = open_race(self._level, self._scenario, self._race_program)
+        session, self._referee, self._recorder = open_race(
+            self._level, self._scenario, self._race_program, EDITS if self._may_edit else ""
+        )
         return session
 
     @property
@@ -478,7 +481,20 @@ class LevelDrive(WatchScreen):
 
     @property
     def _unavailable_actions(self) -> tuple[str, ...]:
-        return ("speed",) if self._race_program is None else ("drive_keys", "stop_robot")
+        if self._race_program is None:
+            return "speed", "edit_file"
+        return "drive_keys", "stop_robot", *(() if self._may_edit else ("edit_file",))
+
+    @property
+    def _may_edit(self) -> bool:
+        """Whether a program of the player's drives; not in the run that counts for today, which a change would end."""
+        return self._own_program is not None and not self._is_run_of_the_day
+
+    def action_edit_file(self) -> None:
+        """Opens the program that drives; once it is another one, it drives again."""
+        program = self._own_program
+        if program is not None and self._may_edit and edit_program(self.app, program, 1, self._theme):
+            self.action_restart()
 
     def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""

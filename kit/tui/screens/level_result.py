@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar, Final, Literal, TypeAlias
+from typing import Any, ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
 from textual import events, work
-from textual.app import ComposeResult
+from textual.app import App, ComposeResult
 from textual.binding import BindingType
 from textual.screen import ModalScreen
 
@@ -391,11 +391,8 @@ class DriveResultScreen(ModalScreen[Wish]):
         program, failure = self._result.program, self._result.finish.failure
         if program is None:
             return
-        before = _content(program)
         line = failure.line if failure is not None and failure.file == program.name else None
-        if problem := edit_aside(self.app, program, line or 1, self._theme.terminal):
-            self.app.push_screen(MessageDialog("No editor opened", problem))
-        elif _content(program) != before:
+        if edit_program(self.app, program, line or 1, self._theme):
             self.dismiss("restart")
 
     def action_help(self) -> None:
@@ -430,6 +427,14 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._show()
         shown = [*(row(each) for each in rows), row(), *map(row, said.splitlines())]
         self.app.push_screen(MessageDialog("A card to share", shown))
+
+
+def edit_program(app: App[Any], program: Path, line: int, theme: Theme) -> bool:
+    """Opens the player's program in the editor; whether it is another one now."""
+    before = _content(program)
+    if problem := edit_aside(app, program, line, theme.terminal):
+        app.push_screen(MessageDialog("No editor opened", problem))
+    return _content(program) != before
 
 
 def _content(file: Path) -> bytes:

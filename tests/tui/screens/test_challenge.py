@@ -175,6 +175,19 @@ def test_every_board_fits_and_answers_every_key(
     visit(scene, journal, tmp_path, size)
 
 
+def test_a_check_of_a_puzzle_that_is_not_solved_says_so(journal: ProgressJournal, tmp_path: Path) -> None:
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, PuzzleScreen), "the puzzle")
+        await seen(pilot, FIRST.story[:40])
+        assert not any("judged" in line for line in rows(pilot))
+        await pilot.press("right", "c")
+        await seen(pilot, "judged . no medal")
+        await pilot.press("escape")
+
+    visit(scene, journal, tmp_path)
+
+
 def test_an_answer_that_cannot_be_judged_says_why(journal: ProgressJournal, tmp_path: Path) -> None:
     file = answer_file(tmp_path, FIRST, "moves.txt")
 

@@ -183,3 +183,61 @@ def test_the_end_of_a_drive_that_does_not_arrive_says_what_was_achieved(tmp_path
     assert finish.shortfall in finish_sentence(finish)
     arrived, _ = keys_drive(level)
     assert not arrived.shortfall
+
+
+@pytest.mark.long
+def test_a_program_is_edited_while_it_drives_and_drives_again_if_it_is_another_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    level = replace(find_level("first-drive"), goal=REACH_TARGET, targets=())
+    program = workspace.controllers / "mine.py"
+    still = "\n".join(
+        line for line in LASER_PROGRAM.read_text().splitlines() if "self.publisher.publish" not in line
+    )
+    program.write_text(still)
+    contents = iter([still, LASER_PROGRAM.read_text().replace("SPEED = 0.5", "SPEED = 0.49")])
+
+    def edit(app: KitApp, file: Path, line: int, terminal: object) -> str:
+        file.write_text(next(contents))
+        return ""
+
+    monkeypatch.setattr(level_result, "edit_aside", edit)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "sends no speed")
+        await seen(pilot, "e edits it")
+        drive = pilot.app.screen
+        assert isinstance(drive, LevelDrive)
+        referee = drive._referee
+        await pilot.press("e")
+        assert drive._referee is referee, "nothing was changed"
+        await pilot.press("e")
+        await until(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen), "the end")
+        await seen(pilot, "The goal was reached")
+
+    with ProgressJournal(workspace.folder) as journal:
+        driven = ControllerFile("mine", program, "")
+        stage(
+            lambda theme: LevelDrive(
+                theme, level, [], journal, workspace, driver=DriverKind.CONTROLLER, program=driven
+            ),
+            scene,
+        )
+
+
+def test_a_drive_by_hand_has_no_program_to_edit(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "front")
+        assert "edit" not in text(pilot)
+        await pilot.press("e")
+        assert isinstance(pilot.app.screen, LevelDrive)
+
+    with ProgressJournal(workspace.folder) as journal:
+        stage(
+            lambda theme: LevelDrive(theme, find_level("first-drive"), [], journal, workspace),
+            scene,
+            size=(120, 35),
+        )
