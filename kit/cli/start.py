@@ -21,6 +21,7 @@ SUGGESTED_COMMANDS: Final = (
     ("kit lesson", "lessons: predict, run, explain, modify, make"),
     ("kit play", "drive: any map, any controller"),
     ("kit game", "levels, stars, ghosts, races"),
+    ("kit league", "your programs and agents against others"),
     ("kit train turn", "train an agent to drive"),
     ("kit layers", "plan a world's collision layers"),
     ("kit quiz", "test what you know; kit quiz --today: questions due today"),

@@ -186,7 +186,7 @@ def _way_out(problem: BaseException, program: StudentProgram) -> str:
     """Says what a name that does not exist was probably meant to be, as Python's own traceback does."""
     if (
         isinstance(problem, OSError)
-        and problem.errno in (errno.EPERM, errno.ENOSYS)
+        and problem.errno in (errno.EPERM, errno.EACCES, errno.ENOSYS)
         and seccomp.is_installed()
     ):
         return f". {_innermost_call(problem.__traceback__)} is refused to a program that is confined."

@@ -69,9 +69,10 @@ def _kit_task(name: str) -> LearningTask:
 
 
 def all_tasks() -> tuple[LearningTask, ...]:
-    """Every task of the kit's: those of the dissertation first, then our own by name."""
+    """Every task of the kit's: the three of the dissertation as the kit poses them, then our own by name, then its variants."""
     own = [name for name in task_names() if name not in {task.name for task in TASKS}]
-    return (*TASKS, *map(find_task, own))
+    first = (TURN, HALLWAY, WHEELCHAIRS)
+    return (*first, *map(find_task, own), *(each for each in TASKS if each not in first))
 
 
 TURN: Final = find_task("turn")

@@ -84,24 +84,24 @@ def _sum_over_moving(t: Transition, each: Array, there: float) -> Array:
 
 
 def forward_reward(t: Transition, there: float = 1.0) -> Array:
-    """1 for each robot that moves forward, half of it along a curve, ``there`` times as much in the target; as a share of all
+    """1 for each robot that moves forward, half of it along a curve, in the target times the factor ``there``; as a share of all
     steps."""
     return _sum_over_moving(t, FORWARD_SHARE[t.move], there)
 
 
 def idle_reward(t: Transition, there: float = 1.0) -> Array:
-    """1 for each robot that stops or goes back, ``there`` times as much in the target; as a share of all steps."""
+    """1 for each robot that stops or goes back, in the target times the factor ``there``; as a share of all steps."""
     return _sum_over_moving(t, IDLE_MOVES[t.move], there)
 
 
 def turning_with_room_reward(t: Transition, there: float = 1.0) -> Array:
-    """1 for each robot that turns on the spot with room ahead, ``there`` times as much in the target; as a share of all
+    """1 for each robot that turns on the spot with room ahead, in the target times the factor ``there``; as a share of all
     steps."""
     return _sum_over_moving(t, TURNING_MOVES[t.move] * (t.front > TIGHT_RANGE), there)
 
 
 def turning_in_need_reward(t: Transition, there: float = 1.0) -> Array:
-    """1 for each robot that turns on the spot before a wall, ``there`` times as much in the target; as a share of all
+    """1 for each robot that turns on the spot before a wall, in the target times the factor ``there``; as a share of all
     steps."""
     return _sum_over_moving(t, TURNING_MOVES[t.move] * (t.front <= TIGHT_RANGE), there)
 

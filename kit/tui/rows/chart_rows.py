@@ -13,6 +13,8 @@ from kit.tui.rows.ruled_title import ruled_title
 CHART_ROWS: Final = 5
 CHART_LABEL: Final = 6
 """Columns of the scale before the bars."""
+WIDEST_BAR: Final = 6
+"""Columns of a value in a stretched chart."""
 
 _EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
 
@@ -66,9 +68,9 @@ def _two_sided(values: Sequence[float], step: float, above: int, below: int) -> 
 def stretched_chart(
     title: str, note: str, values: Sequence[float], width: int, least: float, rows: int
 ) -> list[Row]:
-    """A chart below its title of values from the first to the last, stretched over ``width`` columns, its axis where both
-    sides have the rows that they need."""
-    bars = width - CHART_LABEL
+    """A chart below its title of values from the first to the last, stretched over ``width`` columns as far as few of them
+    reach, its axis where both sides have the rows that they need."""
+    bars = min(width - CHART_LABEL, WIDEST_BAR * len(values))
     shown = [values[min(len(values) - 1, bar * len(values) // bars)] for bar in range(bars)]
     high, low = max(0.0, *shown), -min(0.0, *shown)
     if low <= 0.05 * _top(high, least):

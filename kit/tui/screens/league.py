@@ -18,7 +18,7 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.blocks import Text, Tone
 from kit.document.layout import Page, rows_of
-from kit.document.rows import Row, at_both_edges, fitted, row, side_by_side
+from kit.document.rows import Row, at_both_edges, broken, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
 from kit.school.game.league.entries import LeagueError, program_of_agent, renew_beside_former, submit
@@ -67,7 +67,8 @@ class LeagueScreen(RowsScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     LeagueScreen { layout: vertical; }
-    LeagueScreen #heading, LeagueScreen #note, LeagueScreen #keys { height: 1; }
+    LeagueScreen #heading, LeagueScreen #keys { height: 1; }
+    LeagueScreen #note { height: auto; min-height: 1; }
     LeagueScreen #body { height: 1fr; }
     """
 
@@ -194,9 +195,8 @@ class LeagueScreen(RowsScreen[None]):
         below = [row(), *(row("   ", *each) for each in self._maps)] if self._entrants and self._maps else []
         has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
         self._rows("body").show([*tables, *below] if has_room else tables)
-        self._rows("note").show(
-            [fitted(row((f"  {self._note or self._told_of_match or self._driving}", "dim")), width)]
-        )
+        note = broken(row((f"  {self._note or self._told_of_match or self._driving}", "dim")), width)
+        self._rows("note").show(note[: self._note_rows])
         labels = {"open": "matches" if self._match is None else "replay"}
         idle = () if self._entrants else ("choose", "open", "run_matches")
         self._rows("keys").show([footer(self.screen_actions, width, labels=labels, without=idle)])
@@ -211,7 +211,12 @@ class LeagueScreen(RowsScreen[None]):
     @property
     def _room(self) -> tuple[int, int]:
         """Columns and rows between the heading and the note."""
-        return self.size.width, self.size.height - 3
+        return self.size.width, self.size.height - 2 - self._note_rows
+
+    @property
+    def _note_rows(self) -> int:
+        """Rows for what is told below: of a match in two, so that nothing moves from one to the next."""
+        return 1 if self._match is None else 2
 
     def _tables(self, standings: Standings, width: int, height: int) -> list[Row]:
         """Standings and matches, beside each other where there is room, or what a league is where nobody is entered."""

@@ -194,7 +194,8 @@ class LevelsScreen(RowsScreen[None]):
         number = next((at for at, each in enumerate(self._levels) if drive and drive.level == each.id), None)
         if number is not None:
             self._at = number
-            self._news = f"Your drive of {self._levels[number].title} was cut short: Enter goes on with it."
+            title = self._levels[number].title
+            self._news = f"Your drive of {title} was cut short: Enter on {title} goes on with it."
         elif drive is not None and drive.level == daily_level(today()).id:
             self._news = "Your run of today's level was cut short: d goes on with it."
 

@@ -172,7 +172,7 @@ def test_a_stretched_chart_gives_each_side_the_rows_that_it_needs(values: list[f
     title, *rows = texts(stretched_chart("lead", "s", values, 46, 0.5, 7))
     assert "lead" in title
     assert len(rows) == 7
-    assert {len(line) for line in rows} == {46}
+    assert {len(line) for line in rows} == {6 + 6 * len(values)}
     bars = sum(any(glyph in line for glyph in "▁▂▃▄▅▆▇█▀━") for line in rows)
     assert bars >= 6 or not any(values)
 

@@ -113,14 +113,17 @@ def standings_table(standings: Standings) -> Table:
         Column("drawn"),
         Column("lost"),
     )
+    count = sum(not each.entry.is_house for each in standings.places)
     rows = tuple(
-        (*((f"{each.division}",) if has_divisions else ()), *_place_cells(each)) for each in standings.places
+        (*((f"{each.division}",) if has_divisions else ()), *_place_cells(each, count))
+        for each in standings.places
     )
     return Table("standings", "", columns, rows, grouped=has_divisions)
 
 
-def _place_cells(each: Place) -> tuple[Cell, ...]:
-    number = "" if each.entry.is_house else f"{each.number}."
+def _place_cells(each: Place, count: int) -> tuple[Cell, ...]:
+    """``count``: of those that take a place, among which the number is."""
+    number = "" if each.entry.is_house else f"{each.number} of {count}"
     name = ToneText(each.entry.name, Tone.BOLD if each.entry.is_mine else Tone.PLAIN)
     rating = each.rating
     has_played = each.won + each.drawn + each.lost > 0
