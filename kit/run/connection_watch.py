@@ -70,19 +70,20 @@ class ConnectionWatch(Observer):
         if 0 <= now - self._looked_ns < LOOK_INTERVAL_NS:
             return
         self._looked_ns = now
-        mistakes = [*find_mistakes(self._graph, self._names()), *self._silence()]
+        mistakes = self._mistakes()
         self._since_ns = {each: min(now, self._since_ns.get(each, now)) for each in mistakes}
         self._tell_each(each for each, since in self._since_ns.items() if now - since >= STANDS_NS)
         self._tell_each(find_excesses(self._graph, self._commanders()))
 
     def tell_all(self) -> None:
         """Tells also what has stood for a shorter time: at the end of a run."""
-        self._tell_each([*find_mistakes(self._graph, self._names()), *self._silence()])
+        self._tell_each(self._mistakes())
         self._tell_each(find_excesses(self._graph, self._commanders()))
 
-    def _silence(self) -> list[str]:
+    def _mistakes(self) -> list[str]:
+        """Those of connections; where there are none, which would be why, that nothing was sent."""
         is_silent = not self._is_commanded and self._commands() and self._names()
-        return [self._sent_nothing] if is_silent else []
+        return list(find_mistakes(self._graph, self._names())) or ([self._sent_nothing] if is_silent else [])
 
     def _tell_each(self, mistakes: Iterable[str]) -> None:
         for mistake in mistakes:

@@ -121,7 +121,7 @@ def message_rows(record: LogRecord, width: int, most: int = 1) -> list[Row]:
     style = _LOUD.get(record.severity.name, "")
     line = head + text
     if len(line) <= width or most == 1:
-        lines = [line if len(line) <= width else f"{line[: max(0, width - 4)]} ..."]
+        lines = [line if len(line) <= width else f"{line[: max(0, width - 1)]}…"]
     else:
         lines = wrap(text, width, head, " " * len(clock), most=most)
     first: StyledText = (lines[0][len(head) :], style)

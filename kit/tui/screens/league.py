@@ -195,7 +195,9 @@ class LeagueScreen(RowsScreen[None]):
         below = [row(), *(row("   ", *each) for each in self._maps)] if self._entrants and self._maps else []
         has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
         self._rows("body").show([*tables, *below] if has_room else tables)
-        note = broken(row((f"  {self._note or self._told_of_match or self._driving}", "dim")), width)
+        told = "" if self._note else self._told_of_match
+        told = told or " ".join(filter(None, (self._note, self._driving)))
+        note = broken(row((f"  {told}", "dim")), width)
         self._rows("note").show(note[: self._note_rows])
         labels = {"open": "matches" if self._match is None else "replay"}
         idle = () if self._entrants else ("choose", "open", "run_matches")
@@ -309,9 +311,10 @@ class LeagueScreen(RowsScreen[None]):
         except (LeagueError, OSError) as error:
             self.app.push_screen(MessageDialog("Not entered", str(error)))
             return
-        await self._read_now(f"{name} is entered.")
+        entered = f"{name} is entered."
+        await self._read_now(entered)
         if self._league.is_mine:
-            self.action_run_matches()
+            self._run_matches(entered)
 
     async def _replaces(self, name: str, program: bytes) -> bool:
         """Whether a program takes the place of the one that is entered under its name; asks where that is another one."""
@@ -325,9 +328,13 @@ class LeagueScreen(RowsScreen[None]):
         picked = await self.app.push_screen_wait(Picker(f"Another {name} is entered. What of that?", choices))
         return picked != "keep"
 
+    def action_run_matches(self) -> None:
+        self._run_matches()
+
     @work(group="run")
-    async def action_run_matches(self) -> None:
-        """Runs what is missing, in processes of their own; what is done stays where the screen is left."""
+    async def _run_matches(self, note: str = "") -> None:
+        """Runs what is missing, in processes of their own; what is done stays where the screen is left. ``note``: is told
+        meanwhile."""
         if self._is_running or self._standings is None or self._standings.unread:
             return
         self._is_running = True
@@ -343,6 +350,7 @@ class LeagueScreen(RowsScreen[None]):
                 self.app.call_from_thread(self._read_driven)
 
             if keys:
+                self._note = note
                 self._show_count(0, len(keys))
                 executor = JobExecutor(jobs=os.cpu_count() or 1)
                 await to_thread(executor.run, self._league, keys, count)
@@ -357,8 +365,6 @@ class LeagueScreen(RowsScreen[None]):
 
     def _show_count(self, done: int, count: int) -> None:
         self._driving = f"Driving: {done} of {count}. Who leaves goes on later." if done < count else ""
-        if not done:
-            self._note = ""
         self._show()
 
     def _show_note(self, note: str) -> None:

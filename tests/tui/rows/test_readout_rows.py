@@ -125,8 +125,8 @@ def test_the_newest_message_is_told_to_its_end_where_there_is_room(views: list[V
     both = texts(failure_or_messages(replace(views[-1], messages=[said("with it"), said(long)]), 2, 80))
     assert both[0].endswith("with it")
     assert len(both[1]) == 80
-    assert above[0].endswith(" ...")
-    assert both[1].endswith(" ..."), "what is cut says so"
+    assert above[0].endswith("…")
+    assert both[1].endswith("…"), "what is cut says so"
     assert all(len(line) <= 80 for line in (*alone, *above, *both))
 
 

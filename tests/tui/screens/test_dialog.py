@@ -97,10 +97,11 @@ def test_what_lies_behind_a_dialog_is_fitted_to_a_terminal_that_is_resized() -> 
                 assert below.is_current  # it is painted once
                 for _ in range(100):
                     await pilot.pause(0.05)
-                    if text()[0].endswith(f"lines 1 to {rows - 2} of 60"):
+                    if text()[0].endswith(f"lines 1 to {rows - 3} of 60"):
                         break
                 assert len(text()[0]) == columns
-                assert text()[rows - 2].startswith(f"line {rows - 3}")
+                assert text()[rows - 3].startswith(f"line {rows - 4}")
+                assert not text()[rows - 2], "an empty row above the keys"
                 assert any(ABOVE in line for line in text())
                 for _ in range(100):
                     await pilot.pause(0.05)

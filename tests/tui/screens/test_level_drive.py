@@ -30,6 +30,7 @@ from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import DriveResultScreen
 from kit.tui.textual_patches import FITTING_S
+from tests.driving_program import driving_program
 from tests.school.game.measured_drivers import LASER_PROGRAM, drive, keys_drive
 from tests.tui.lesson_stage import seen, stage, text, until
 from tests.tui.screens.test_dialog import row_of, shown_cells
@@ -192,9 +193,7 @@ def test_a_program_is_edited_while_it_drives_and_drives_again_if_it_is_another_o
     workspace = prepare_workspace(tmp_path / "home")
     level = replace(find_level("first-drive"), goal=REACH_TARGET, targets=())
     program = workspace.controllers / "mine.py"
-    still = "\n".join(
-        line for line in LASER_PROGRAM.read_text().splitlines() if "self.publisher.publish" not in line
-    )
+    still = driving_program()
     program.write_text(still)
     contents = iter([still, LASER_PROGRAM.read_text().replace("SPEED = 0.5", "SPEED = 0.49")])
 
