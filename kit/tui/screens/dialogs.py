@@ -16,6 +16,7 @@ from kit.document.rows import Row, broken, row
 from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import help_page
 from kit.tui.screens.dialog import Dialog
+from kit.tui.widgets.text_field import KitInput
 from kit.tui.widgets.text_rows import TextRows
 
 WIDTH: Final = 74
@@ -136,7 +137,7 @@ class NameDialog(Dialog[str | None]):
         with Vertical() as box:
             box.border_title = self._title
             box.border_subtitle = "Enter confirm, Esc back"
-            yield Input(self._value, select_on_focus=False)
+            yield KitInput(self._value, select_on_focus=False)
 
     def on_mount(self) -> None:
         field = self.query_one(Input)

@@ -35,6 +35,7 @@ from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
 from kit.tui.widgets.field_plot import FieldPlot, first_field, item_count, why_not
 from kit.tui.widgets.frame_view import FrameView
+from kit.tui.widgets.text_field import KitInput
 from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
 
 if TYPE_CHECKING:
@@ -191,7 +192,7 @@ class GraphScreen(RowsScreen[None]):
             yield TextRows(id="about")
             yield self._plot
         yield TextRows(id="keys")
-        yield Input(
+        yield KitInput(
             placeholder="part of a name; Enter keeps the filter, Esc shows all", select_on_focus=False
         )
 

@@ -23,6 +23,7 @@ from kit.layers.requirements import LayerCase, LayerCaseError
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.layer_rows import picture, words_width
 from kit.tui.screens.dialogs import HelpDialog
+from kit.tui.widgets.text_field import KitInput
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 
 KINDS: dict[RowKind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
@@ -82,7 +83,7 @@ class CaseEditor(RowsScreen[LayerCase]):
             yield TextRows(id="table")
         yield TextRows(id="remark")
         yield TextRows(id="keys")
-        yield Input(select_on_focus=False)
+        yield KitInput(select_on_focus=False)
 
     def on_mount(self) -> None:
         self.query_one(Input).cursor_blink = False

@@ -32,6 +32,7 @@ from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.layer_case_editor import CaseEditor
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
+from kit.tui.widgets.text_field import KitInput
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
@@ -106,7 +107,7 @@ class LayersScreen(RowsScreen[None]):
             yield TextRows(id="words")
         yield TextRows(id="remark")
         yield TextRows(id="keys")
-        yield Input(select_on_focus=False)
+        yield KitInput(select_on_focus=False)
 
     def on_mount(self) -> None:
         self.query_one(Input).cursor_blink = False

@@ -19,6 +19,7 @@ from kit.dialogue.screen_action import ScreenAction
 from kit.plain_text import wrap
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialog import Dialog
+from kit.tui.widgets.text_field import KitInput
 
 LIST_WIDTH, WIDEST = 76, 120
 """Columns of a list with its border, at least where the screen has them, and at most."""
@@ -53,7 +54,7 @@ class PickerItem:
         return 0 if " ".join(wanted) in name else 1 if all(each in name for each in wanted) else 2
 
 
-class FilterInput(Input):
+class FilterInput(KitInput):
     """The field above a list; Home and End are the list's."""
 
     BINDINGS: ClassVar[list[BindingType]] = [

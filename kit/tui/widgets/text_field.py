@@ -10,7 +10,8 @@ from rich.style import Style
 from textual import events
 from textual._text_area_theme import TextAreaTheme
 from textual.message import Message
-from textual.widgets import TextArea
+from textual.widget import Widget
+from textual.widgets import Input, TextArea
 
 _NAME: Final = "kit"
 _NO_STYLES: Final[Mapping[str, Style]] = MappingProxyType({})
@@ -24,7 +25,27 @@ class AnswerEntered(Message):
     """Enter was pressed in an answer."""
 
 
-class KitTextArea(TextArea):
+class OrderedKeys:
+    """A part of a widget: does what a key of its own is bound to before the next key is read.
+
+    Textual hands a key that is no letter on to the app, which finds its binding: letters that arrive in the same read, as they do
+    over a slow line, would be typed before a Backspace or an arrow that was pressed before them.
+    """
+
+    async def on_key(self, event: events.Key) -> None:
+        assert isinstance(self, Widget)  # a base that is one would take the place of the other one's styles
+        for binding in self._bindings.key_to_bindings.get(event.key, ()):
+            if await self.app.run_action(binding.action, self):  # not one that has nothing to do here
+                event.prevent_default()
+                event.stop()
+                return
+
+
+class KitInput(OrderedKeys, Input):
+    """A text in one line."""
+
+
+class KitTextArea(OrderedKeys, TextArea):
     """A text area whose cursor does not blink. ``syntax_styles``: of the names that ``highlight`` gives."""
 
     def __init__(
@@ -53,7 +74,7 @@ class KitTextArea(TextArea):
         )
         self.theme = _NAME
 
-    def on_key(self, event: events.Key) -> None:
+    async def on_key(self, event: events.Key) -> None:
         """Esc leaves, where Textual would give the focus to whatever comes next."""
         if event.key == "escape":
             event.prevent_default()
@@ -69,13 +90,11 @@ class AnswerField(KitTextArea):
     .-ascii AnswerField, .-ascii AnswerField:focus { border: ascii $foreground; }
     """
 
-    def on_key(self, event: events.Key) -> None:
+    async def on_key(self, event: events.Key) -> None:
         if event.key == "enter":
             event.prevent_default()
             event.stop()
             self.post_message(AnswerEntered())
-        else:
-            super().on_key(event)
 
     @property
     def answer(self) -> str:
