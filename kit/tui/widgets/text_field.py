@@ -26,16 +26,18 @@ class AnswerEntered(Message):
 
 
 class OrderedKeys:
-    """A part of a widget: does what a key of its own is bound to before the next key is read.
+    """A part of a widget: edits its text by a key of its own before the next key is read.
 
     Textual hands a key that is no letter on to the app, which finds its binding: letters that arrive in the same read, as they do
-    over a slow line, would be typed before a Backspace or an arrow that was pressed before them.
+    over a slow line, would be typed before a Backspace or an arrow that was pressed before them. Keys for the screen go that way
+    all the same, in their order.
     """
 
     async def on_key(self, event: events.Key) -> None:
         assert isinstance(self, Widget)  # a base that is one would take the place of the other one's styles
         for binding in self._bindings.key_to_bindings.get(event.key, ()):
-            if await self.app.run_action(binding.action, self):  # not one that has nothing to do here
+            is_for_screen = binding.action == "submit" or "." in binding.action
+            if not is_for_screen and await self.app.run_action(binding.action, self):
                 event.prevent_default()
                 event.stop()
                 return
