@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from asyncio import to_thread
+from asyncio import Lock, to_thread
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import ClassVar, Final
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.worker import get_current_worker
 
 from kit.controllers import user_controllers
 from kit.dialogue.actions import ScreenActions
@@ -83,6 +84,9 @@ class LeagueScreen(RowsScreen[None]):
         self._match: int | None = None
         """The number of the chosen one among the entrant's matches; None while an entrant is chosen."""
         self._note = ""
+        self._reading = Lock()
+        self._asked = self._read_for = 0
+        """How often the standings were asked for, and how many of these they answer."""
         self._is_running = False
         self._driving = ""
         """How many matches of a run have been driven; empty where none is driven."""
@@ -101,51 +105,61 @@ class LeagueScreen(RowsScreen[None]):
         self.call_after_refresh(self._show)
         self._draw_maps()
 
-    @work(exclusive=True, group="read")
-    async def _read(self) -> None:
-        await self._read_now()
+    @work(group="read")
+    async def _read(self, note: str | None = "") -> None:
+        await self._read_now(note)
 
-    async def _read_now(self, note: str = "") -> None:
+    async def _read_now(self, note: str | None = "") -> None:
+        """Reads the standings, once at a time: all that ask while that goes on share one more reading after it. ``note``: is told
+        then; None: what is told stays."""
+        self._asked += 1
+        asked = self._asked
         try:
-            self._standings = await to_thread(read_standings, self._league, self._show_so_far)
-            self._note = note
+            async with self._reading:
+                if self._read_for < asked:
+                    newest = self._asked
+                    self._take(await to_thread(read_standings, self._league, self._show_so_far))
+                    self._read_for = newest
         except LeftError:
             return
         except LeagueError as error:
-            self._note = str(error)
-        if self._match is not None:
-            self._match = min(self._match, len(self._matches) - 1) if self._matches else None
+            note = str(error)
+        if note is not None:
+            self._note = note
         if self.is_attached:
             self._show()
-            self._draw_maps()
+            if note is not None:
+                self._draw_maps()
 
-    @work(exclusive=True, group="read")
-    async def _read_driven(self) -> None:
-        """Shows what has been driven meanwhile; who is chosen stays chosen, and so does the match."""
-        try:
-            standings = await to_thread(read_standings, self._league)
-        except LeagueError:
-            return  # what reads everything again at the end tells why
-        name = self._entrants[self._at] if self._chosen is not None else ""
+    def _take(self, standings: Standings) -> None:
+        """Who is chosen stays chosen, and so does the match."""
+        is_chosen = bool(self._entrants) and (self._chosen is not None or self._match is not None)
+        name = self._entrants[self._at] if is_chosen else ""
         jobs = None if self._match is None else self._matches[self._match].jobs
         self._standings = standings
         self._chosen = self._entrants.index(name) if name in self._entrants else None
         if jobs is not None:
             found = (number for number, each in enumerate(self._matches) if each.jobs == jobs)
             self._match = next(found, None)
-        if self.is_attached:
-            self._show()
 
     def _show_so_far(self, standings: Standings) -> None:
-        """Shows what has been read, from the thread that reads; ends that where the screen has been left."""
-        if not self.is_attached:
-            raise LeftError("The league was left.")
+        """Shows what has been read at first, from the thread that reads; later what is whole stays until it has been read anew."""
+        self._end_if_left()
+        if self._standings is not None and not self._standings.unread:
+            return
 
         def show() -> None:
-            self._standings, self._note = standings, ""
+            self._take(standings)
+            self._note = ""
             self._show()
 
         self.app.call_from_thread(show)
+
+    def _end_if_left(self) -> None:
+        """Ends what a thread computes for a worker that nobody waits for any more: only the worker itself ends by being
+        cancelled. Raises LeftError."""
+        if not self.is_attached or get_current_worker().is_cancelled:
+            raise LeftError("The league was left.")
 
     @work(exclusive=True, group="maps")
     async def _draw_maps(self) -> None:
@@ -272,7 +286,9 @@ class LeagueScreen(RowsScreen[None]):
         self._show_note("Running the drives again ...")
         try:
             match = self._matches[self._match]
-            film = await to_thread(match_film, self._league, match)
+            film = await to_thread(match_film, self._league, match, self._end_if_left)
+        except LeftError:
+            return
         except LeagueError as error:
             self._show_note(str(error))
             return
@@ -281,6 +297,8 @@ class LeagueScreen(RowsScreen[None]):
 
     def action_back(self) -> None:
         if self._match is not None:
+            if self.workers.cancel_group(self, "open"):
+                self._note = ""
             self._match = None
             self._show()
             return
@@ -345,23 +363,30 @@ class LeagueScreen(RowsScreen[None]):
 
             def count(key: str) -> None:
                 nonlocal done
+                if not self.is_attached:
+                    raise LeftError("The league was left.")
                 done += 1
                 self.app.call_from_thread(self._show_count, done, len(keys))
-                self.app.call_from_thread(self._read_driven)
+                self.app.call_from_thread(self._read, None)
 
             if keys:
                 self._note = note
                 self._show_count(0, len(keys))
                 executor = JobExecutor(jobs=os.cpu_count() or 1)
                 await to_thread(executor.run, self._league, keys, count)
+        except LeftError:
+            return
         except (LeagueError, OSError) as error:
             self.app.push_screen(MessageDialog("The league cannot be run", str(error)))
             return
         finally:
             self._is_running = False
-        self._driving = ""
+        self._driving = "Running the drives again ..." if keys else ""
+        self._show()
         idle = "All matches are driven." if len(self._entrants) > 1 else "A match needs two entrants."
         await self._read_now(f"{len(keys)} were driven." if keys else idle)
+        self._driving = ""
+        self._show()
 
     def _show_count(self, done: int, count: int) -> None:
         self._driving = f"Driving: {done} of {count}. Who leaves goes on later." if done < count else ""

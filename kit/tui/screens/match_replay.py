@@ -85,14 +85,17 @@ class MatchReplayScreen(ReplayScreen):
             return "They are level."
         return f"{self._lettered if behind > 0.0 else self._driven} leads by {abs(behind):.2f} s"
 
+    def _view_arrived(self, view: View) -> None:
+        if self._match.is_tag:  # there is no target to drive to
+            bodies = tuple(each for each in view.scene.bodies if not each.is_target)
+            scene = replace(view.scene, targets=(), bodies=bodies)
+            view = replace(view, scene=scene, metrics=replace(view.metrics, target_m=None, reached_s=None))
+        super()._view_arrived(view)
+
     def _newest_scene(self) -> Scene:
         scene = super()._newest_scene()
         if self.view is None:
             return scene
-        if self._match.is_tag:  # there is no target to drive to
-            return replace(
-                scene, targets=(), bodies=tuple(each for each in scene.bodies if not each.is_target)
-            )
         marks = [
             SceneMark(x, y, self._letter, Role.GHOST_OTHER)
             for ghost in self._ghosts

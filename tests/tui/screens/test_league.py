@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
 
-from kit.school.game.league.entries import HOLDERS
-from kit.school.game.league.league import own_league
-from kit.tui.screens.league import LeagueScreen
+from kit.document.tables import list_rows
+from kit.school.game.league.entries import HOLDERS, Entry
+from kit.school.game.league.league import League, own_league
+from kit.school.game.league.league_blocks import matches_table
+from kit.school.game.league.standings import Match, Standings, match_film, read_standings
+from kit.school.game.levels import find_level
+from kit.school.game.race import DriverKind
+from kit.tui.screens import league as league_screen
+from kit.tui.screens.league import STANDINGS_WIDTH, LeagueScreen
+from kit.tui.screens.level_drive import LeftError
 from kit.tui.screens.match_replay import MatchReplayScreen
 from kit.workspace import open_workspace
 from tests.school.game.league.test_league import GIVES_UP, LASER, make_league, run
-from tests.tui.lesson_stage import seen, stage, text, until
+from tests.tui.lesson_stage import row_text, seen, stage, text, until
 
 
 def test_an_empty_league_says_how_to_enter_and_a_program_enters_by_a_key(tmp_path: Path) -> None:
@@ -98,3 +107,87 @@ def test_the_screen_runs_the_matches_as_the_command_does(tmp_path: Path) -> None
     stage(lambda theme: LeagueScreen(theme, league, workspace), scene)
     assert league.waiting() == ()
     assert (league.folder / HOLDERS).is_file(), "so that nobody else can take a name"
+
+
+def test_the_standings_are_read_once_at_a_time_and_no_more_when_the_screen_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace = open_workspace(tmp_path / "home")
+    league = own_league(workspace)
+    begun: list[int] = []
+    ended: list[BaseException] = []
+    goes_on, within = threading.Semaphore(0), threading.Lock()
+
+    def read(league: League, on_progress: Callable[[Standings], object]) -> Standings:
+        standings = read_standings(league)
+        begun.append(len(begun))
+        assert within.acquire(blocking=False), "another reading goes on"
+        try:
+            while not goes_on.acquire(timeout=0.01):
+                on_progress(standings)
+        except LeftError as error:
+            ended.append(error)
+            raise
+        finally:
+            within.release()
+        return standings
+
+    monkeypatch.setattr(league_screen, "read_standings", read)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LeagueScreen)
+        await until(pilot, lambda: begun, "the first reading")
+        for _ in range(5):  # as five drives do that are through
+            screen._read(None)
+        await pilot.pause()
+        goes_on.release(2)
+        await until(pilot, lambda: screen._read_for == 6, "the one that all five share")
+        assert len(begun) == 2
+        screen._read(None)
+        await until(pilot, lambda: len(begun) == 3, "one more")
+        await pilot.press("escape")
+        await until(pilot, lambda: ended, "its end")
+
+    try:
+        stage(lambda theme: LeagueScreen(theme, league, workspace), scene)
+    finally:
+        goes_on.release(20)
+    assert len(begun) == 3
+
+
+@pytest.mark.long
+def test_a_game_of_tag_is_replayed_without_a_target(tmp_path: Path) -> None:
+    league = make_league(tmp_path, races=False, tag=True, laser=LASER, stands=GIVES_UP)
+    match = run(league).matches[0]
+    film = match_film(league, match)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, MatchReplayScreen)
+        await seen(pilot, "distance")
+        assert "target" not in text(pilot)
+        await pilot.press("3")
+        await until(
+            pilot, lambda: screen.view is not None and screen.view.tick == film.recordings[0].ticks, "the end"
+        )
+        await pilot.pause()
+        assert "target" not in text(pilot)
+
+    stage(lambda theme: MatchReplayScreen(theme, match, film), scene)
+
+
+@pytest.mark.parametrize("is_first", [True, False])
+def test_a_match_is_one_row_beside_the_standings(is_first: bool) -> None:
+    level = find_level("left-turn")
+    own, other = (
+        Entry(name, DriverKind.CONTROLLER, Path(name), name, name, is_mine=True)
+        for name in ("my_controller", "the_other_one")
+    )
+    entrants = (own, other) if is_first else (other, own)
+    match = Match(level, False, entrants, 1.0, "by 10.52 s", ("10.00 s", "20.52 s"), (), True)
+    shown = list_rows(matches_table([match], own.name), 120 - STANDINGS_WIDTH, 20, 0)
+    (only,) = [row_text(each) for each in shown if "Left turn" in row_text(each)]
+    assert "the_other_one" in only
+    assert own.name not in only
+    assert len(shown) == 1

@@ -12,6 +12,7 @@ import hashlib
 import json
 import os
 import stat
+import threading
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
@@ -69,6 +70,8 @@ WALL_LIMIT_S: Final = 300.0
 """Of one drive [s of wall clock]."""
 MAX_JUDGED: Final = 20_000
 """Results whose judgement is kept in memory."""
+_RUNNING_AGAIN: Final = threading.Lock()
+"""Held while recordings are run again: threads that compute side by side hold each other up, and would judge the same twice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,9 +274,10 @@ class League(JobFolder):
         content = self._read_result(job)
         if content is None:
             return None
-        if self.judgements is None:
-            return _judge(content, job.level, len(job.entrants))
-        return _judge_once(self.judgements, content, job.level, len(job.entrants))
+        with _RUNNING_AGAIN:
+            if self.judgements is None:
+                return _judge(content, job.level, len(job.entrants))
+            return _judge_once(self.judgements, content, job.level, len(job.entrants))
 
     def recordings(self, job: LeagueJob) -> tuple[Recording, ...]:
         """The recordings of a job, run again: of a drive from each start, of a game one. Raises LeagueError."""
@@ -281,7 +285,8 @@ class League(JobFolder):
         try:
             if content is None:
                 raise DriveRefused("it is gone")
-            return _rerun(content, job.level, len(job.entrants))[1]
+            with _RUNNING_AGAIN:
+                return _rerun(content, job.level, len(job.entrants))[1]
         except (DriveRefused, RecordingError, ValueError) as error:
             raise LeagueError(f"This match cannot be shown: {error}.") from None
 

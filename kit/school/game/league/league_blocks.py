@@ -173,35 +173,31 @@ def result_sentence(match: Match) -> str:
 
 
 def matches_table(matches: Sequence[Match], name: str | None = None) -> Table:
-    """Matches with a number each, from 1; ``name``: only those of this entrant, who is named first."""
+    """Matches with a number each, from 1; ``name``: only those of this entrant, whose name is not told in every row."""
     columns = (
-        Column("", TEXT),
-        Column("", TEXT),
-        Column("", TEXT),
-        Column("", TEXT),
-        Column("", TEXT),
+        *(Column("", TEXT) for _ in range(5 if name is None else 4)),
         Column("", TEXT, is_optional=True),
-        Column("first did", TEXT, is_optional=True),
-        Column("second did", TEXT, is_optional=True),
+        Column("first did" if name is None else f"{name} did", TEXT, is_optional=True),
+        Column("second did" if name is None else "the other did", TEXT, is_optional=True),
     )
     rows = tuple(
-        _match_cells(number, match, is_turned=match.entrants[1].name == name)
+        _match_cells(number, match, name)
         for number, match in enumerate(matches, 1)
         if name is None or name in (each.name for each in match.entrants)
     )
     return Table("matches", "", columns, rows)
 
 
-def _match_cells(number: int, match: Match, *, is_turned: bool) -> tuple[Cell, ...]:
+def _match_cells(number: int, match: Match, name: str | None) -> tuple[Cell, ...]:
     (first, second), details, points = match.entrants, match.details, match.points
-    if is_turned:
+    if second.name == name:
         first, second, details, points = second, first, details[::-1], 1.0 - points
     word, tone = ("beat", Tone.GOOD) if points > DRAW else ("lost to", Tone.WARN)
     elsewhere = "" if match.is_same_platform else " (another machine)"
     return (
         f"{number}",
         _match_title(match),
-        first.name,
+        *((first.name,) if name is None else ()),
         ToneText("drew with", Tone.PLAIN) if points == DRAW else ToneText(word, tone),
         second.name,
         match.by,

@@ -177,9 +177,13 @@ class MatchFilm:
     """Of tag: how it stood, every ``TOLD_TICKS`` ticks."""
 
 
-def match_film(league: League, match: Match) -> MatchFilm:
-    """Runs the recordings of a match again. Raises LeagueError."""
-    recordings = [each for job in match.jobs for each in league.recordings(job) if each.seed == OWN_SEED]
+def match_film(league: League, match: Match, on_job: Callable[[], object] = lambda: None) -> MatchFilm:
+    """Runs the recordings of a match again. ``on_job``: called before each of its jobs; what it raises ends this. Raises
+    LeagueError."""
+    recordings: list[Recording] = []
+    for job in match.jobs:
+        on_job()
+        recordings += [each for each in league.recordings(job) if each.seed == OWN_SEED]
     states: list[SharedGameState] = []
     if match.is_tag:
         tag_again(match.level, recordings[0], states.append)

@@ -6,9 +6,12 @@ import io
 import json
 import os
 import shutil
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -325,6 +328,49 @@ def test_what_was_judged_is_kept_for_the_next_look_and_damage_of_it_is_passed_ov
     league_module._judge_once.cache_clear()
     first.write_text('{"judged": {"finishes": 3}}')
     assert standings_table(read_standings(league)) == before
+
+
+def test_two_who_read_at_once_judge_one_after_the_other_and_nothing_twice(
+    driven: League, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    league, judge = League(driven.folder, tmp_path / "judged"), league_module._judge
+    meeting = threading.Barrier(2)  # where both are within at once
+    judged: list[bytes] = []
+    met: list[int] = []
+
+    def meet(content: bytes, *told: Any) -> JudgedJob | None:
+        judged.append(content)
+        with suppress(threading.BrokenBarrierError):
+            met.append(meeting.wait(0.5))
+        return judge(content, *told)
+
+    monkeypatch.setattr(league_module, "_judge", meet)
+    with ThreadPoolExecutor(2) as readers:
+        first, second = readers.map(read_standings, [league, league])
+    assert standings_table(first) == standings_table(second)
+    assert (met, len(judged), len(set(judged))) == ([], 2, 2)
+
+
+def test_a_film_that_nobody_waits_for_runs_nothing_more(
+    driven: League, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (match,) = read_standings(driven).matches
+    left = [False]
+    rerun = league_module._rerun
+
+    def leave_meanwhile(*told: Any) -> Any:
+        assert not left[0], "it was left before"
+        left[0] = True
+        return rerun(*told)
+
+    def end_if_left() -> None:
+        if left[0]:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(league_module, "_rerun", leave_meanwhile)
+    with pytest.raises(KeyboardInterrupt):
+        match_film(driven, match, end_if_left)
+    assert left[0]
 
 
 def test_divisions_hold_six_each(tmp_path: Path) -> None:
