@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from kit.render.curve import MIN_COLUMNS_WITH_MARGIN, draw_value_axis, nice_ceil
 from kit.render.encode import UNICODE_GLYPHS, Frame, GlyphSet
 from kit.render.frame_text import write_text
 from kit.render.roles import Role
+
+NEWEST: Final = "in the last batch"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +47,8 @@ def draw_stacked_chart(
     margin: int = 0,
     symbols: GlyphSet = UNICODE_GLYPHS,
 ) -> Frame:
-    """A frame of ``columns`` x ``rows`` characters: the parts' names and newest percentages on top, below them a
-    column for each stretch of steps, the first part at the bottom."""
+    """A frame of ``columns`` x ``rows`` characters: the parts' names on top, where there is room with the percentages
+    of the last batch, below them a column for each stretch of steps, the first part at the bottom."""
     frame = Frame.empty(columns, rows)
     top = int(rows >= 3)
     if top:
@@ -80,9 +83,15 @@ def _column_shares(stacked: StackedCounts, width: int) -> FloatArray:
 
 
 def _write_part_names(frame: Frame, stacked: StackedCounts, parts: Sequence[ChartPart]) -> None:
-    newest = stacked.counts[-1] / stacked.counts[-1].sum() if len(stacked.x) else np.full(len(parts), np.nan)
+    names = [f"{part.glyph}{part.name}" for part in parts]
+    if len(stacked.x):
+        newest = (stacked.counts[-1] / stacked.counts[-1].sum()).tolist()
+        with_shares = [f"{name} {share:.0%}" for name, share in zip(names, newest, strict=True)]
+        named = " ".join(with_shares)
+        if len(named) + 1 + len(NEWEST) <= frame.shape[1]:
+            names = with_shares
+            write_text(frame, 0, len(named) + 1, NEWEST)
     column = 0
-    for part, share in zip(parts, newest.tolist(), strict=True):
-        text = f"{part.glyph}{part.name}" + ("" if np.isnan(share) else f" {100 * share:.0f}%")
-        write_text(frame, 0, column, text, part.role)
-        column += len(text) + 1
+    for part, name in zip(parts, names, strict=True):
+        write_text(frame, 0, column, name, part.role)
+        column += len(name) + 1

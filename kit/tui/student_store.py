@@ -91,17 +91,18 @@ class StudentStore:
         except (ProgressError, FileNotFoundError) as error:
             return StudentOverview(problem=str(error))
         going_on = next_lesson(shelf)
-        on_lessons(StudentOverview(shelf, going_on, is_whole=False))
-        from kit.school.game.daily import DAILY_PREFIX, streak, today
+        from kit.school.game.daily import daily_id, streak, today
 
         day = today()
+        days, has_run = streak(events, day), any(event.subject == daily_id(day) for event in events)
+        on_lessons(StudentOverview(shelf, going_on, streak=days, has_run_today=has_run, is_whole=False))
         next_medal, next_level, won = self._game(events)
         return StudentOverview(
             shelf,
             going_on,
             self._count_due(),
-            streak(events, day),
-            any(event.subject == f"{DAILY_PREFIX}{day.isoformat()}" for event in events),
+            days,
+            has_run,
             next_medal,
             next_level,
             won,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kit.render.stacked_chart import StackedCounts, draw_stacked_chart
+from kit.render.stacked_chart import NEWEST, StackedCounts, draw_stacked_chart
 from tests.render.test_curve import PARTS
 
 
@@ -22,10 +22,15 @@ def column(frame_rows: list[str], at: int) -> str:
 
 def test_every_batch_stands_over_its_steps() -> None:
     rows = draw_stacked_chart(shares((50, 1, 3), (100, 1, 1)), PARTS, 25, 5).rows()
-    assert rows[0] == "Wwon 50% Llost 50%"
+    assert rows[0] == "Wwon Llost", "shares would not fit with what they are of"
     assert rows[1].startswith("100%")
     assert rows[4].startswith("  0%")
     assert [column(rows, at) for at in range(5, 25)] == ["WLLL"] * 10 + ["WWLL"] * 10
+
+
+def test_the_shares_say_what_they_are_of() -> None:
+    rows = draw_stacked_chart(shares((50, 1, 3), (100, 1, 1)), PARTS, 40, 5).rows()
+    assert rows[0] == f"Wwon 50% Llost 50% {NEWEST}"
 
 
 def test_batches_that_share_a_column_are_added_up() -> None:

@@ -233,7 +233,7 @@ class TrainUntilSure:
                     memory,
                     True,
                     stop=True,
-                    reason=f"every case reaches {low:.3f} or more with confidence",
+                    reason=f"every case reaches {low:.3f} or more, {self.confidence:.0%} sure",
                 )
             if worst_share(counts) < self.goal or self._is_lost(counts, attempts, memory):
                 break

@@ -47,11 +47,11 @@ class ExtraRule(StrEnum):
     def short_name(self, level: GameLevel) -> str:
         """The same in a few words."""
         return {
-            ExtraRule.CLEAN: "touched nothing",
+            ExtraRule.CLEAN: "no bump",
             ExtraRule.NO_STOP: "no stop",
             ExtraRule.ONE_SENSOR: "one sensor",
             ExtraRule.FEW_LINES: f"{level.rules.max_lines} lines",
-            ExtraRule.FEW_STEPS: f"{level.rules.max_training_steps or 0:,} steps",
+            ExtraRule.FEW_STEPS: f"{level.rules.max_training_steps or 0:,} training steps",
         }[self]
 
 

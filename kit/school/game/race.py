@@ -191,9 +191,9 @@ class RaceReferee(Observer):
         if simulation.tick <= self._last_tick:  # it was reset: a new drive
             self._reset()
         self._last_tick = simulation.tick
-        self._seconds = simulation.time_ns / 1e9
-        if self.objective.reached_s is not None:
+        if self.is_over:  # a world that is watched goes on until its screen has seen the end
             return
+        self._seconds = simulation.time_ns / 1e9
         self._metrics.on_step(simulation)
         step = simulation.step_size
         strides = []

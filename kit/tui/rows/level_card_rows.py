@@ -84,10 +84,8 @@ def star_line(level: GameLevel, kept: Collection[ExtraRule]) -> Row:
         (STAR if rule in kept else NO_STAR, "warn" if rule in kept else "", rule)
         for rule in offered_rules(level)
     )
-    parts = [
-        part for sign, style, rule in rules for part in ((f"{sign} ", style), f"{rule.short_name(level)}  ")
-    ]
-    return row((" stars ", "dim"), *parts)
+    parts = [part for sign, style, rule in rules for part in ((f"  {sign} ", style), rule.short_name(level))]
+    return row((" stars", "dim"), *parts)
 
 
 def best_splits(ghosts: Sequence[Ghost]) -> tuple[DriverKind, tuple[Split, ...]] | None:

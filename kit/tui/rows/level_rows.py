@@ -127,7 +127,6 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         row(
             ("skill  ", "dim"),
             level.skill,
-            (f"   lesson {level.lesson_number} opens it too" if level.opened_by_lesson else "", "dim"),
         ),
     ]
     if not progress.is_open:

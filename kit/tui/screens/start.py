@@ -5,7 +5,8 @@ from __future__ import annotations
 from asyncio import Event, get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from dataclasses import replace
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from textual import work
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from kit.run.view import View
     from kit.school.game.challenge import Challenge
     from kit.school.game.levels import GameLevel
+    from kit.school.lessons.glossary import GlossaryTerm
     from kit.school.lessons.records import Lesson
     from kit.school.progress import ProgressJournal
 
@@ -203,10 +205,18 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         return overview
 
     def _show_lessons(self, lessons: StudentOverview) -> None:
-        """Shows where to go on before the rest is known; never in place of what was known already."""
+        """Shows where to go on and whether today's maze was driven before the rest is known, which stays as it was."""
         if self._overview is None:
             self._overview = lessons
-            self._show()
+        elif not lessons.problem:
+            self._overview = replace(
+                self._overview,
+                shelf=lessons.shelf,
+                going_on=lessons.going_on,
+                streak=lessons.streak,
+                has_run_today=lessons.has_run_today,
+            )
+        self._show()
 
     # Keys
 
@@ -240,9 +250,10 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._rows("messages").show([] if notice is None else [notice])
 
     async def palette_commands(self) -> list[PaletteCommand]:
-        """Lines of the menu, lessons, levels and maps; each is opened in place of whatever is open above."""
+        """Lines of the menu, lessons, levels and maps, each opened in place of whatever is open above; and the glossary's terms."""
         from kit.school.game.challenges import all_challenges
         from kit.school.game.levels import all_levels
+        from kit.school.lessons.reading import lesson_number
         from kit.world.catalogue import all_maps
 
         overview = await self._current_overview()
@@ -250,6 +261,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
         of_game = {each.id: each for each in LevelsScreen.screen_actions.own}
         levels, puzzles = await to_thread(all_levels), await to_thread(all_challenges)
+        terms = await to_thread(_glossary)
         return [
             *(
                 PaletteCommand(
@@ -295,7 +307,22 @@ class StartScreen(PlayScreen, inherit_bindings=False):
                 )
                 for card in all_maps()
             ),
+            *(
+                PaletteCommand(
+                    f"Term {each.term}",
+                    f"its meaning; lesson {lesson_number(each.lesson)} introduces it",
+                    partial(self._show_term, each),
+                    " ".join(each.also).casefold(),
+                )
+                for each in terms
+            ),
         ]
+
+    async def _show_term(self, term: GlossaryTerm) -> None:
+        """Above whatever is open, like the glossary itself."""
+        from kit.tui.screens.text_screen import page_screen
+
+        self.app.push_screen(page_screen("Glossary", term.blocks()))
 
     def _opener(self, open_it: Callable[[], Awaitable[None]]) -> Callable[[], Awaitable[None]]:
         async def run() -> None:
@@ -448,6 +475,18 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._close_own_world()
         await show_progress(self, self._store)
         await self._reopen_own_world()
+
+
+@cache
+def _glossary() -> tuple[GlossaryTerm, ...]:
+    """All terms; none where they cannot be read, which the glossary's own screen tells."""
+    from kit.school.lessons.glossary import read_glossary
+    from kit.world.problems import WorldError
+
+    try:
+        return read_glossary()
+    except (WorldError, FileNotFoundError):
+        return ()
 
 
 def _picture_of(level: GameLevel, glyphs: str) -> tuple[str, ...]:

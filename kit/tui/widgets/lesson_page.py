@@ -125,7 +125,7 @@ class LessonPage(Container):
     LessonPage.-panels #below { display: block; }
     LessonPage.-beside, LessonPage.-roomy { layout: horizontal; }
     LessonPage.-beside #left, LessonPage.-roomy #left { width: 1fr; height: 1fr; }
-    LessonPage.-beside #stage, LessonPage.-roomy #stage { height: 1fr; }
+    LessonPage.-beside #stage, LessonPage.-roomy #stage { height: 1fr; padding: 0 1 0 0; }
     LessonPage.-roomy.-work #work { display: block; width: 1fr; height: 1fr; }
     LessonPage.-roomy.-work #log { display: block; }
     LessonPage #work, LessonPage #log { padding: 0 1 0 0; }

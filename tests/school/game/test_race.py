@@ -346,6 +346,21 @@ def test_a_bump_is_no_way_home() -> None:
         assert referee.finish.splits == ()
 
 
+def test_what_happens_after_the_time_is_over_is_not_counted() -> None:
+    level = replace(STRAIGHT, time_limit=2.0)
+    scenario = level.find_scenario()
+    with Session(scenario) as session:
+        referee = RaceReferee(level, scenario)
+        session.runner.observers.append(referee)
+        run_until(session.runner, ticks=300)
+        for topic in session.command_topics(scenario.partners[0]):
+            session.runner.accept(topic, Twist(linear=Vector3(x=0.5)))
+        run_until(session.runner, ticks=800)
+    assert referee.is_over
+    assert not referee.finish.reached
+    assert referee.finish.seconds == 2.0
+
+
 def test_a_pair_that_is_apart_gets_bronze_at_best() -> None:
     """One after the other both come to the target: as quick as it may be, on a level that asks them to stay side by side."""
     pair = next(level for level in LEVELS if level.id == "two-chairs")

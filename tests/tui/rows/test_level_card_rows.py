@@ -17,6 +17,7 @@ from kit.tui.rows.level_card_rows import (
     PARTS,
     best_splits,
     level_card,
+    star_line,
     stars_and_sectors,
 )
 from tests.kit_content import kit_levels
@@ -69,3 +70,7 @@ def test_the_sectors_of_the_quickest_own_drive_stand_beside_the_stars() -> None:
     wide = [row_text(each) for each in stars_and_sectors(level, (), best, 2 * COLUMN)]
     assert sum("sector " in each for each in wide) == len(best[1])
     assert not any("sector " in row_text(each) for each in stars_and_sectors(level, (), best, COLUMN + 5))
+
+
+def test_the_stars_of_every_level_fit_on_one_row_of_80_columns() -> None:
+    assert [each.id for each in kit_levels() if row_width(star_line(each, ())) > 80] == []

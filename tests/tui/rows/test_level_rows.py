@@ -74,6 +74,10 @@ def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
     for each in level_progress(kit_levels(), ()):
         for is_open in (True, False):
             rows = about(replace(each, is_open=is_open), (), 99.0, 80)
+            told = " ".join(map(row_text, rows))
+            assert (f"lesson {each.level.lesson_number}" in told) is (
+                bool(each.level.opened_by_lesson) and not is_open
+            )
             assert [row_text(row) for row in rows if len(row_text(row)) > 80] == []
         names = [
             "the reference (R) 6.0 s",

@@ -8,6 +8,7 @@ from textual.widgets import OptionList
 
 from kit.render.palettes import COLOR_SCHEMES
 from kit.render.roles import Role
+from kit.school.lessons.glossary import read_glossary
 from kit.tui.app import KitApp
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.lesson import LessonScreen
@@ -97,6 +98,19 @@ def test_it_opens_a_part_of_the_game(house: House) -> None:
         await pilot.press(*"leaderboard", "enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, LeaderboardScreen), "the leaderboard")
         assert isinstance(pilot.app.screen_stack[-2], LevelsScreen)
+
+    house.play(scene)
+
+
+@pytest.mark.parametrize("spelling", [0, -1])
+def test_it_finds_terms_of_the_glossary_by_each_of_their_spellings(house: House, spelling: int) -> None:
+    term = max(read_glossary(), key=lambda each: len("".join(each.also)))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        await pilot.press("ctrl+p", *f"term {term.spellings[spelling]}", "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, TextScreen), "the term")
+        await seen(pilot, " ".join(term.meaning.split()[:4]))
 
     house.play(scene)
 

@@ -13,6 +13,7 @@ from textual.screen import Screen
 
 from kit.controllers import prepare_workspace
 from kit.document.rows import Row
+from kit.school.game.daily import daily_id, today
 from kit.school.progress import FILE, EventKind, ProgressJournal
 from kit.tui.screens.start import MENU, StartScreen
 from kit.tui.student_store import StudentOverview, StudentStore
@@ -327,6 +328,32 @@ def test_where_to_go_on_is_told_before_the_rest_is_read(
         assert "today" not in text(pilot), "nothing is said of what is not known yet"
         may_go_on.set()
         await seen(pilot, "not driven yet")
+
+    house.play(scene, (120, 40))
+
+
+def test_a_maze_that_was_driven_is_told_at_once_on_coming_back(
+    house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    may_go_on = threading.Event()
+    count_due = StudentStore._count_due
+
+    def wait(store: StudentStore) -> int | None:
+        assert may_go_on.wait(LIMIT_S)
+        return count_due(store)
+
+    monkeypatch.setattr(StudentStore, "_count_due", wait)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        may_go_on.set()
+        await seen(pilot, "not driven yet")
+        await pilot.press("enter")
+        await seen(pilot, "waiting for your prediction")
+        house.note((EventKind.START, daily_id(today())))
+        may_go_on.clear()
+        await pilot.press("escape")
+        await seen(pilot, "driven today")
+        may_go_on.set()
 
     house.play(scene, (120, 40))
 
