@@ -113,6 +113,12 @@ def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
     return shown
 
 
+def _cut(line: str, width: int) -> str:
+    """As much of a line as fits; dots where that ends in the middle of a word."""
+    is_within_word = len(line) > width > 0 and line[width - 1].isalnum() and line[width].isalnum()
+    return f"{line[: width - 1]}…" if is_within_word else line[:width]
+
+
 def message_rows(record: LogRecord, width: int, most: int = 1) -> list[Row]:
     """A message in at most this many rows: its time, who says it, its first line as far as it fits."""
     clock = f"{format_clock(record.time_ns / 1e9):>7} "
@@ -121,7 +127,7 @@ def message_rows(record: LogRecord, width: int, most: int = 1) -> list[Row]:
     style = _LOUD.get(record.severity.name, "")
     line = head + text
     if len(line) <= width or most == 1:
-        lines = [line if len(line) <= width else f"{line[: max(0, width - 1)]}…"]
+        lines = [_cut(line, width)]
     else:
         lines = wrap(text, width, head, " " * len(clock), most=most)
     first: StyledText = (lines[0][len(head) :], style)

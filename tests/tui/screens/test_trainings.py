@@ -289,7 +289,7 @@ def test_whoever_has_no_training_is_told_what_comes_after_where_there_is_room(
 def test_a_first_training_learns_the_task_that_is_chosen(tmp_path: Path, size: tuple[int, int]) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, ">  turn")
-        await pilot.press("down", "down")
+        await pilot.press("down")
         await seen(pilot, ">  hallway")
         if size[0] == 200:
             await seen(pilot, "algorithms that can learn hallway")
