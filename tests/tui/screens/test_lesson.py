@@ -484,7 +484,7 @@ def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "1 colour:")
         assert "what is checked, and its points" in text(pilot)
-        student.file.write_text("# mine\ncolour: green\n")
+        student.file.write_text("# mine\ncolour: red\n")
         await seen(pilot, "1 # mine")
         words = next(number for number, line in enumerate(rows(pilot)) if "Write the colour into" in line)
         mine = next(number for number, line in enumerate(rows(pilot)) if "# mine" in line)
