@@ -59,11 +59,15 @@ def test_from_a_drawing_to_a_race(kit: Open, tmp_path: Path, monkeypatch: pytest
 
     # A corridor, drawn with the keys: a floor two squares high, the start at its left end, the target at its right.
     sheet = kit("maps", "new", "corridor", "--size", "14x4", "--cell", "0.35")
-    sheet.until(lambda: "New map corridor" in sheet.text and "[]" in sheet.text, "the sheet")
+
+    def drawn() -> str:
+        return "".join(line[:56] for line in sheet.text.splitlines()[1:-2])  # beside the panel
+
+    sheet.until(lambda: "New map corridor" in sheet.text and "[" in drawn(), "the sheet")
     sheet.send(b"3 ")
-    sheet.until(lambda: "S" in sheet.text.splitlines()[2], "the start")
+    sheet.until(lambda: "S" in drawn(), "the start")
     sheet.send(b"4\x1b[F\x1b[D ")
-    sheet.until(lambda: "T" in sheet.text.splitlines()[2], "the target")
+    sheet.until(lambda: "T" in drawn(), "the target")
     sheet.send(b"\x13")
     assert "The path from start to target" in said(sheet)
     world = workspace() / "worlds" / "corridor"
