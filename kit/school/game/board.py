@@ -9,6 +9,9 @@ from itertools import accumulate, groupby
 from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
 
 from kit.breadth_first import reached_from
+from kit.document.blocks import Cell as TableCell
+from kit.document.blocks import labelled_table
+from kit.document.layout import Page, rows_of
 from kit.document.rows import Row
 from kit.layers.drawing.spans import GlyphStyle
 from kit.school.game.judgement import Judgement
@@ -174,6 +177,11 @@ def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1)
         for row, line in enumerate(grid)
         for part in range(1 if is_thin(row, rows, line) else scale)
     ]
+
+
+def told_rows(title: str, told: Iterable[tuple[TableCell, ...]], width: int) -> list[Row]:
+    """Names below a title, and what is said of each."""
+    return [((title, "dim"),), *rows_of([labelled_table(told, is_tight=True)], Page(width=width, margin=1))]
 
 
 def figure_rows(title: str, grid: Grid, figures: Mapping[Cell, str]) -> list[Row]:

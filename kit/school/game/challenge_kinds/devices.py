@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Final, Self
 
+from kit.document.blocks import Tone, ToneText
 from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
 from kit.plain_text import counted
-from kit.school.game.board import WALL, Board, Cell, History, figure_rows, free_cells, grid_rows
+from kit.school.game.board import WALL, Board, Cell, History, figure_rows, free_cells, grid_rows, told_rows
 from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
@@ -151,15 +152,14 @@ class DevicesBoard(Board):
         """What each laser sees, what one would see at the cursor, what nothing sees yet, and how many see each square."""
         task = self._task
         missed = sorted(set(task.places) - task.seen_from(self._lasers))
-
-        def told(name: str, names: Iterable[str]) -> Row:
-            return row(f" {name:<8}", (" ".join(sorted(names)) or "none", "bold"))
-
-        of_lasers = (told(f"{laser[0]},{laser[1]}", _visible_squares(task)[laser]) for laser in self._lasers)
+        places = [("cursor", self._cursor), *((f"{laser[0]},{laser[1]}", laser) for laser in self._lasers)]
+        sights = [
+            (name, ToneText(" ".join(sorted(_visible_squares(task)[place])) or "none", Tone.BOLD))
+            for name, place in places
+        ]
         lit = Counter(cell for laser in self._lasers for cell in _squares_seen_from(task, laser))
-        here = told("cursor", _visible_squares(task)[self._cursor])
         return [
-            [row(("letters in sight of", "dim")), here, *of_lasers],
+            told_rows("letters in sight of", sights, width),
             [row(("letters that nothing sees", "dim")), row(f" {' '.join(missed) or 'none'}")],
             figure_rows(
                 "lasers that see each square", task.grid, {cell: str(count) for cell, count in lit.items()}

@@ -24,6 +24,7 @@ from kit.school.game.board import (
     letters_of,
     shortest_way,
     step,
+    told_rows,
     visit_rows,
 )
 from kit.school.game.challenge import AnswerError, AnswerSubmission
@@ -196,13 +197,13 @@ class PassByBoard(Board):
         """How far each robot is from where it wants to be, and how often each square was entered."""
         task, now = self._task, places(self._task, self._both_moves, MAX_TICKS)
         left = [distances_to(task.grid, goal)[cell] for goal, cell in zip(task.goals, now, strict=True)]
-        togo = [row(f" {name}  {count:>2}") for name, count in zip("AB", left, strict=True)]
+        togo = told_rows("moves still to go at the end", zip("AB", left, strict=True), width)
         entered = [
             cell
             for start, moves in zip(task.starts, self._moves, strict=True)
             for cell in cells_of_moves(task.grid, start, moves.replace(WAIT, ""))
         ]
-        return [[row(("moves still to go at the end", "dim")), *togo], visit_rows(task.grid, entered)]
+        return [togo, visit_rows(task.grid, entered)]
 
     def curve(self) -> tuple[str, Sequence[float]]:
         far = [distances_to(self._task.grid, goal) for goal in self._task.goals]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
+from kit.document.blocks import Tone, ToneText
 from kit.document.rows import Row, row
 from kit.plain_text import counted
 from kit.school.game.board import (
@@ -17,6 +18,7 @@ from kit.school.game.board import (
     find_cell,
     grid_rows,
     shortest_way,
+    told_rows,
     visit_rows,
 )
 from kit.school.game.challenge import AnswerSubmission
@@ -136,11 +138,14 @@ class RoundBoard(MovesBoard):
             (cells.index(place), name) for name, place in self._round.places.items() if place in cells
         )
         legs = [
-            row(f" {name}  after {number + 1:>3} moves", (f"  +{number - before}", "dim"))
+            (name, number + 1, ToneText(f"+{number - before}", Tone.DIM))
             for (number, name), before in zip(reached, [-1, *(number for number, _ in reached)], strict=False)
         ]
-        order = [row(("moves to each letter", "dim")), *legs]
-        return [order, visit_rows(self._round.grid, cells), self.moves_made(width)]
+        return [
+            told_rows("moves to each letter", legs, width),
+            visit_rows(self._round.grid, cells),
+            self.moves_made(width),
+        ]
 
     def curve(self) -> tuple[str, Sequence[float]]:
         left, counts = dict.fromkeys(self._round.places.values()), []
