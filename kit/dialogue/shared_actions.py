@@ -80,6 +80,7 @@ _OF_SEVERAL: Final = (
     ScreenAction("move_cursor", "arrows", "move", "move the cursor; PgUp, PgDn, Home and End: further", _MOVE),
     letter("undo", "u", "undo", "undo the last change"),
     letter("share", "y", "share", "save the card of a drive, or the robot's map"),
+    letter("filter", "/", "filter", "show only names that contain a text; Esc shows all", name="slash", has_priority=True),
     # where keys drive a robot
     ScreenAction("drive_keys", "arrows W A S D", "drive", "drive; you take over from the program", (), "←↑↓→"),
     ScreenAction("stop_robot", "Space", "stop", "stop the robot", ()),

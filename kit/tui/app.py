@@ -93,10 +93,9 @@ class KitApp(App[None]):
 
     def action_glossary(self) -> None:
         """Opens the glossary over any screen."""
-        from kit.school.lessons.glossary import glossary_blocks, read_glossary  # of no use to the first frame
-        from kit.tui.screens.text_screen import page_screen
+        from kit.tui.screens.glossary import open_glossary  # of no use to the first frame
 
-        self.push_screen(page_screen("Glossary", glossary_blocks(read_glossary())))
+        open_glossary(self)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leaves Ctrl-C to a screen that has an action for it, and Ctrl-Z to a text that takes a change back."""

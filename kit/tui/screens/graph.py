@@ -12,7 +12,6 @@ from textual.binding import BindingType
 from textual.containers import Container
 from textual.message import Message as ScreenMessage
 from textual.timer import Timer
-from textual.widgets import Input
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
@@ -34,9 +33,9 @@ from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
 from kit.tui.widgets.field_plot import FieldPlot, first_field, item_count, why_not
+from kit.tui.widgets.filter_field import FilteredScreen, FilterField
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_field import KitInput
-from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
+from kit.tui.widgets.text_rows import RowClicked, TextRows
 
 if TYPE_CHECKING:
     from kit.run.session import Session
@@ -113,7 +112,7 @@ class GraphChanged(ScreenMessage):
     """The world's thread has heard something."""
 
 
-class GraphScreen(RowsScreen[None]):
+class GraphScreen(FilteredScreen):
     """Listens while it is open. Draws only while something moves; a paused world costs no byte."""
 
     AUTO_FOCUS = ""
@@ -121,7 +120,6 @@ class GraphScreen(RowsScreen[None]):
         "nodes",
         ("choose", "open", "plot", "filter", "all_names", "tidy", "pause", "step", "help", "back"),
         own=(
-            letter("filter", "/", "filter", "show only names that contain a text; Esc shows all", name="slash", has_priority=True),
             letter("all_names", "a", "all", "show also ROS's own topics and unused services"),
             letter("tidy", "t", "tidy", "arrange everything again"),
             letter("plot", "y", "plot", "plot the selected field of a message over time"),
@@ -134,7 +132,6 @@ class GraphScreen(RowsScreen[None]):
     GraphScreen #picture {{ height: 1fr; }}
     GraphScreen #message {{ height: {ABOUT_ROWS}; }}
     GraphScreen #about {{ width: 1fr; height: 1fr; }}
-    GraphScreen Input, GraphScreen Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
     GraphScreen.-low #message {{ height: 3; }}
     GraphScreen.-tall #message {{ height: 50%; }}
     GraphScreen.-details #picture, GraphScreen #plot {{ display: none; }}
@@ -173,7 +170,6 @@ class GraphScreen(RowsScreen[None]):
         self._about_rows = 0
         """How many rows there are to say of what is chosen, its name's among them."""
         self._everything = False
-        self._narrowed = ""
         self._clock: Timer | None = None
         self._read = 0.0
         """When what is read was last made again."""
@@ -192,14 +188,10 @@ class GraphScreen(RowsScreen[None]):
             yield TextRows(id="about")
             yield self._plot
         yield TextRows(id="keys")
-        yield KitInput(
-            placeholder="part of a name; Enter keeps the filter, Esc shows all", select_on_focus=False
-        )
+        yield FilterField()
 
     def on_mount(self) -> None:
         self._rows("heading").show([row((f"listening to {self._title} ...", "dim"))])
-        self.query_one(Input).cursor_blink = False
-        self._ask_for_name(False)
         self._host.set_listener(self._listener)
 
     def on_unmount(self) -> None:
@@ -250,7 +242,7 @@ class GraphScreen(RowsScreen[None]):
         heard = self._heard
         if heard is None or not self.size.width:
             return
-        talk = build_graph_data(heard.state, show_all=self._everything, name_filter=self._narrowed)
+        talk = build_graph_data(heard.state, show_all=self._everything, name_filter=self.filter_text)
         if self._plan is None or talk != self._talk or before is None or self._plan.width != self.size.width:
             self._talk, self._places = talk, arrange_graph(talk, before)
             self._plan = GraphDrawing(talk, self._places, self.size.width)
@@ -291,7 +283,9 @@ class GraphScreen(RowsScreen[None]):
         if heard is None:
             return
         self._share_height()
-        self._rows("heading").show([heading(self._title, self._talk, heard, self._narrowed, self.size.width)])
+        self._rows("heading").show(
+            [heading(self._title, self._talk, heard, self.filter_text, self.size.width)]
+        )
         width = self._rows("about").size.width or self.size.width
         full = self._shows_details or self.has_class("-tall")
         field = self._shown_field() if self._shows_details else ""
@@ -459,25 +453,8 @@ class GraphScreen(RowsScreen[None]):
         self.toggle_class("-plot")
         self.call_after_refresh(self._show_all)
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
-        return action != "filter" or (self.is_mounted and self.focused is None)
-
-    def action_filter(self) -> None:
-        self._ask_for_name(True)
-
-    def on_input_changed(self, event: Input.Changed) -> None:
-        self._narrowed = event.value
+    def on_filter(self) -> None:
         self._rearrange()
-
-    def on_input_submitted(self) -> None:
-        self._ask_for_name(False)
-
-    def _ask_for_name(self, asked: bool) -> None:
-        """The field in place of the keys, or the keys. At once: the next letters may be here already."""
-        field = self.query_one(Input)
-        field.display, self._rows("keys").display = asked, not asked
-        self.set_focus(field if asked else None)
 
     def action_all_names(self) -> None:
         self._everything = not self._everything
@@ -510,14 +487,13 @@ class GraphScreen(RowsScreen[None]):
 
     def action_back(self) -> None:
         """Leaves the innermost open view: field, plot, details, filter, and at last the screen."""
-        if self.focused is not None:
-            self.query_one(Input).value = ""
-            self._ask_for_name(False)
-        elif self.has_class("-plot"):
+        if self.leave_field():
+            return
+        if self.has_class("-plot"):
             self.action_plot()
         elif self._shows_details:
             self.action_open()
-        elif self._narrowed:
-            self.query_one(Input).value = ""
+        elif self.filter_text:
+            self.show_all()
         else:
             self.dismiss()

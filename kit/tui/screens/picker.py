@@ -46,12 +46,14 @@ class PickerItem:
     """Words that are not shown, and by which it is found too."""
 
     def rank(self, wanted: Sequence[str]) -> int | None:
-        """The place of the line among those with all these words, in small letters: first those that have them in their names;
-        None: it has not all of them."""
+        """The place of the line among those with all these words, in small letters: first those whose names begin with them, then
+        those that have them in their names; None: it has not all of them."""
         name, text = self.name.casefold(), self.text.casefold()
         if not all(each in f"{name} {text} {self.words}" for each in wanted):
             return None
-        return 0 if " ".join(wanted) in name else 1 if all(each in name for each in wanted) else 2
+        if " ".join(wanted) in name:
+            return 0 if name.startswith(" ".join(wanted)) else 1
+        return 2 if all(each in name for each in wanted) else 3
 
 
 class FilterInput(KitInput):

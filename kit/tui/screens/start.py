@@ -320,9 +320,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     async def _show_term(self, term: GlossaryTerm) -> None:
         """Above whatever is open, like the glossary itself."""
-        from kit.tui.screens.text_screen import page_screen
+        from kit.tui.screens.glossary import open_glossary
 
-        self.app.push_screen(page_screen("Glossary", term.blocks()))
+        open_glossary(self.app, term)
 
     def _opener(self, open_it: Callable[[], Awaitable[None]]) -> Callable[[], Awaitable[None]]:
         async def run() -> None:

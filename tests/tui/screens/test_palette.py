@@ -10,6 +10,7 @@ from kit.render.palettes import COLOR_SCHEMES
 from kit.render.roles import Role
 from kit.school.lessons.glossary import read_glossary
 from kit.tui.app import KitApp
+from kit.tui.screens.glossary import GlossaryScreen
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lessons import LessonsScreen
@@ -109,7 +110,7 @@ def test_it_finds_terms_of_the_glossary_by_each_of_their_spellings(house: House,
     async def scene(pilot: Pilot[None]) -> None:
         await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
         await pilot.press("ctrl+p", *f"term {term.spellings[spelling]}", "enter")
-        await until(pilot, lambda: isinstance(pilot.app.screen, TextScreen), "the term")
+        await until(pilot, lambda: isinstance(pilot.app.screen, GlossaryScreen), "the term")
         await seen(pilot, " ".join(term.meaning.split()[:4]))
 
     house.play(scene)
