@@ -19,7 +19,7 @@ WIDEST_BAR: Final = 6
 _EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
 
 
-def laser_chart(laser: Sequence[float], width: int) -> list[Row]:
+def laser_chart(laser: Sequence[float], width: int, rows: int = CHART_ROWS) -> list[Row]:
     """Bars of the distance [m] by direction, from behind on the left over ahead in the middle to behind on the right."""
     ranges = laser[::-1]
     bars = width - CHART_LABEL
@@ -28,7 +28,7 @@ def laser_chart(laser: Sequence[float], width: int) -> list[Row]:
     for start, stop in pairwise(columns):
         seen = filter(math.isfinite, ranges[start : max(stop, start + 1)])
         heights.append(min(seen, default=0.0))
-    return _bar_rows(heights, max(heights, default=0.0) or 1.0, CHART_ROWS, "m")
+    return _bar_rows(heights, max(heights, default=0.0) or 1.0, rows, "m")
 
 
 def time_chart(values: Sequence[float], width: int, least: float, rows: int = CHART_ROWS) -> list[Row]:

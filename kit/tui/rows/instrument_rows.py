@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from kit.document.rows import Row, fitted, row, row_text
+from kit.document.rows import Row, fitted, row, row_text, side_by_side
 from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
 from kit.tui.rows.readout_rows import message_rows
 from kit.tui.rows.ruled_title import ruled_title
@@ -24,6 +24,17 @@ LEAST_ROWS: Final = 28
 LARGE_PANEL_WIDTH: Final = 46
 WIDE_PANEL: Final = (160, 60)
 """From this many columns on, the panel is this wide."""
+MARGIN: Final = 2
+"""Columns of a panel that stay empty, at its sides."""
+COLUMN_GAP: Final = 2
+"""Empty columns between the two of a panel, which has two where the picture leaves it room for them."""
+CARD_WIDTH, CODE_WIDTH = 60, 92
+"""Columns that a card and a program's code have a use for."""
+ENOUGH: Final = 0.75
+"""The share of them with which they stand beside the instruments."""
+CHARTS: Final = 3
+HIGHEST_CHART: Final = 10
+"""Rows of a chart below which nothing else stands."""
 MESSAGES: Final = "messages"
 """The title of the newest messages."""
 HISTORY_S: Final = 60.0
@@ -31,17 +42,44 @@ SAMPLE_S: Final = 0.2
 """Seconds of the simulation that the charts of the past cover, and between two of their points."""
 
 
-def panel_width(columns: int, rows: int, shape: float) -> int:
-    """The width of the panel on a screen of this size; 0 where there is no room for instruments. ``shape``: the width of the
-    picture's world divided by its height; infinite where nothing is known of it."""
-    if columns >= LARGE_SIZE[0] and rows >= LARGE_SIZE[1]:
-        return WIDE_PANEL[1] if columns >= WIDE_PANEL[0] else LARGE_PANEL_WIDTH
-    if rows < LEAST_ROWS or math.isinf(shape):
-        return 0
-    from kit.render.camera import CELL_ASPECT  # numpy, which the first frame does not wait for
+@dataclass(frozen=True)
+class PanelWidths:
+    """The columns of a panel: of the instruments, and of what stands beside them; 0 where that stands below them."""
 
-    spare = columns - CELL_ASPECT * rows * shape
-    return int(min(spare, WIDE_PANEL[1])) if spare >= LARGE_PANEL_WIDTH else 0
+    instruments: int = 0
+    beside: int = 0
+
+    @property
+    def total(self) -> int:
+        return self.instruments + (self.beside + COLUMN_GAP if self.beside else 0)
+
+    @property
+    def card(self) -> int:
+        """Of what the panel has besides the instruments."""
+        return self.beside or self.instruments
+
+
+def panel_widths(columns: int, rows: int, shape: float, wanted: int = 0) -> PanelWidths:
+    """How wide the panel is on a screen of this size; nothing where there is no room for instruments.
+
+    ``shape``: the width of the picture's world divided by its height; infinite where nothing is known of it. ``wanted``: the
+    columns for which there is a use beside the instruments.
+    """
+    if rows < LEAST_ROWS:
+        return PanelWidths()
+    spare = 0
+    if not math.isinf(shape):
+        from kit.render.camera import CELL_ASPECT  # numpy, which the first frame does not wait for
+
+        spare = int(columns - CELL_ASPECT * rows * shape) - MARGIN
+    beside = min(wanted, spare - LARGE_PANEL_WIDTH - COLUMN_GAP)
+    if wanted and beside >= ENOUGH * wanted:
+        return PanelWidths(min(WIDE_PANEL[1] - MARGIN, spare - COLUMN_GAP - beside), beside)
+    width = min(spare, max(WIDE_PANEL[1] - MARGIN, wanted))
+    if columns >= LARGE_SIZE[0] and rows >= LARGE_SIZE[1]:
+        least = WIDE_PANEL[1] if columns >= WIDE_PANEL[0] else LARGE_PANEL_WIDTH
+        return PanelWidths(max(least - MARGIN, width))
+    return PanelWidths(width if width >= LARGE_PANEL_WIDTH - MARGIN else 0)
 
 
 @dataclass
@@ -67,16 +105,49 @@ class SpeedHistory:
             self._last = view.time_s if self._last == -math.inf else self._last + missed * SAMPLE_S
 
 
-def instruments(
-    view: View, history: SpeedHistory, figures: Sequence[Row], program: Sequence[Row], size: tuple[int, int]
-) -> tuple[Row, ...]:
-    """The panel of a large screen, in order of importance as far as ``size``, columns and rows, has room; a chart for which there
-    is no room is left out whole.
+@dataclass(frozen=True)
+class Listing:
+    """The code of the program that drives: the lines of its file, and what is said beside its name."""
 
-    ``figures``: of ``figure_rows``. ``program``: the lines of the controller's file.
+    lines: Sequence[Row] = ()
+    note: str = ""
+
+
+def instruments(
+    view: View,
+    history: SpeedHistory,
+    figures: Sequence[Row],
+    program: Listing,
+    card: Sequence[Row],
+    widths: PanelWidths,
+    height: int,
+) -> tuple[Row, ...]:
+    """The panel of a large screen, in order of importance as far as there is room; a chart for which there is none is left out
+    whole.
+
+    ``figures``: of ``figure_rows``. ``card``: what the screen tells besides; it and the program stand beside the charts where
+    the panel has room for them there, else below.
     """
+    if not widths.beside:
+        width = widths.instruments
+        above = _told(view, history, figures, (width, height - len(card)))
+        below = _program_rows(view, program, width, height - len(card) - len(above))
+        return (*above, *below, *card)[:height]
+    left = _told(view, history, figures, (widths.instruments, height), HIGHEST_CHART)
+    right = [*card, *_program_rows(view, program, widths.beside, height - len(card))]
+    return tuple(side_by_side(left, right, widths.instruments + COLUMN_GAP)[:height])
+
+
+def _told(
+    view: View,
+    history: SpeedHistory,
+    figures: Sequence[Row],
+    size: tuple[int, int],
+    highest: int = CHART_ROWS,
+) -> list[Row]:
+    """Figures, charts of at most ``highest`` rows, and the newest messages."""
     width, height = size
-    rows = with_charts(view, history, figures, size)
+    rows = with_charts(view, history, figures, size, highest)
     left = height - len(rows)
     if view.messages and left > 2:
         shown = view.messages[-max(1, min(len(view.messages), 8, left - 1)) :]
@@ -84,22 +155,31 @@ def instruments(
             ruled_title(MESSAGES, width),
             *(each for record in shown for each in message_rows(record, width)),
         ]
-    left = height - len(rows)
-    if program and left > 3:
-        rows += [
-            ruled_title(view.controller or "program", width, "^E edits it"),
-            *_code_rows(program, width, left - 1),
-        ]
-    return tuple(rows[:height])
+    return rows[:height]
+
+
+def _program_rows(view: View, program: Listing, width: int, room: int) -> list[Row]:
+    """The controller's code below its name."""
+    if not program.lines or room <= 3:
+        return []
+    title = ruled_title(view.controller or "program", width, program.note)
+    return [title, *_code_rows(program.lines, width, room - 1)]
 
 
 def with_charts(
-    view: View, history: SpeedHistory, figures: Sequence[Row], size: tuple[int, int]
+    view: View,
+    history: SpeedHistory,
+    figures: Sequence[Row],
+    size: tuple[int, int],
+    highest: int = CHART_ROWS,
 ) -> list[Row]:
-    """The figures, and below them the charts for which ``size``, columns and rows, has room."""
+    """The figures, and below them the charts for which ``size``, columns and rows, has room, of at most ``highest`` rows."""
     width, height = size
     rows = [*figures]
-    for chart in _charts(view, history, width) if len(rows) + CHART_ROWS < height else ():
+    messages = 1 + min(len(view.messages), 8) if view.messages else 0
+    each_has = (height - len(rows) - messages) // CHARTS - 1
+    high = min(highest, max(CHART_ROWS, each_has))
+    for chart in _charts(view, history, width, high) if len(rows) + CHART_ROWS < height else ():
         if len(rows) + len(chart) <= height:
             rows += chart
     return rows
@@ -116,16 +196,17 @@ def figure_rows(title: str, figures: Sequence[Row], width: int) -> list[Row]:
     return [ruled_title(title, width), *_two_columns(figures, width)]
 
 
-def _charts(view: View, history: SpeedHistory, width: int) -> Iterator[list[Row]]:
+def _charts(view: View, history: SpeedHistory, width: int, rows: int) -> Iterator[list[Row]]:
     """What the laser sees, and the speeds of the last minute."""
     if view.nearest:  # it has a laser, whose first scan is to come or sees nothing
         ranges = view.laser.tolist()
         title = ruled_title("laser", width, "distance to the left, ahead, to the right")
-        yield [title, *laser_chart(ranges, width)]
+        yield [title, *laser_chart(ranges, width, rows)]
     if history.forward_speeds:
         title = ruled_title("speed", width, f"last {HISTORY_S:.0f} s, m/s")
-        yield [title, *time_chart(history.forward_speeds, width, 0.1)]
-        yield [ruled_title("turning", width, "rad/s, up is left"), *time_chart(history.turning, width, 0.5)]
+        yield [title, *time_chart(history.forward_speeds, width, 0.1, rows)]
+        title = ruled_title("turning", width, "rad/s, up is left")
+        yield [title, *time_chart(history.turning, width, 0.5, rows)]
 
 
 def _two_columns(rows: Sequence[Row], width: int) -> list[Row]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
+from kit.document.blocks import labelled_table
+from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row, row_width, side_by_side
 from kit.plain_text import wrap
 from kit.school.game.ghosts import Ghost, Split, compare_tracks
@@ -19,12 +21,29 @@ from kit.tui.rows.ruled_title import ruled_title
 COLUMN: Final = 54
 """Columns of the stars where the sectors stand beside them."""
 GAP: Final = 2
-PARTS: Final = ("story", "task", "skill", "ladder", "stars")
+PARTS: Final = ("story", "task", "skill", "ladder", "stars", "rivals", "sectors")
 """Parts of a card, from top to bottom."""
-BY_WORTH: Final = ("story", "ladder", "task", "stars", "skill")
+BY_WORTH: Final = ("story", "ladder", "task", "stars", "skill", "rivals", "sectors")
 """The part that is left out last before the others."""
 LEAST_WIDTH: Final = 16
 """Columns of a card."""
+WIDE: Final = 46
+"""Columns of a card from which on it tells of other drives."""
+
+
+class Rival(NamedTuple):
+    """Whom one races: the letter on the map, who it is, and the time of the drive [s]."""
+
+    letter: str
+    who: str
+    seconds: float
+
+
+class Company(NamedTuple):
+    """What a level's earlier drives add to its card: who races there, and the best of one's own by sectors."""
+
+    rivals: Sequence[Rival] = ()
+    best: tuple[DriverKind, Sequence[Split]] | None = None
 
 
 def level_card(
@@ -34,9 +53,11 @@ def level_card(
     kept: Collection[ExtraRule],
     width: int,
     room: int,
+    company: Company,
 ) -> dict[str, list[Row]]:
-    """What a level is about, by part: story, task, the rungs of its ladder, and the rules that earn stars. Parts for which
-    there is no room are left out whole. ``kept``: the rules that a drive has kept already."""
+    """What a level is about, by part: story, task, the rungs of its ladder, the rules that earn stars, and what is known of
+    others' and one's own drives. Parts for which there is no room are left out whole. ``kept``: the rules that a drive has
+    kept already."""
     if width < LEAST_WIDTH:  # the screen has no size yet
         return {}
     skill = f"skill: {level.skill}" if level.skill else ""
@@ -48,10 +69,11 @@ def level_card(
         [row((line, "dim")) for line in wrap(skill, width)],
         ladder,
         stars,
+        *(([], []) if width < WIDE else _company_rows(company, width)),
     )
-    parts = dict(zip(PARTS, rows, strict=True))
+    parts = {name: part for name, part in zip(PARTS, rows, strict=True) if part}
     shown: set[str] = set()
-    for name in BY_WORTH:
+    for name in filter(parts.__contains__, BY_WORTH):
         if sum(len(parts[each]) for each in (*shown, name)) <= room:
             shown.add(name)
     return {name: part for name, part in parts.items() if name in shown}
@@ -64,6 +86,21 @@ def _ladder_rows(driver: DriverKind, reference: float, width: int) -> list[Row]:
         row(*ladder_bar(driver, reference, None, min(width, RESULT_BAR))),
     ]
     return [*rows, *rung_rows(driver, reference)]
+
+
+def _company_rows(company: Company, width: int) -> tuple[list[Row], list[Row]]:
+    """Whom one races, each with the letter on the map, and the sectors of one's best drive."""
+    table = labelled_table(
+        [(each.letter, each.who, f"{each.seconds:.2f} s") for each in company.rivals], is_tight=True
+    )
+    rivals = [ruled_title("on the map", width), *rows_of([table], Page(width=width))]
+    sectors = [] if company.best is None else _sector_rows(*company.best, width)
+    return rivals if company.rivals else [], sectors
+
+
+def _sector_rows(driver: DriverKind, splits: Sequence[Split], width: int) -> list[Row]:
+    """The sectors of one's best drive."""
+    return [ruled_title("sectors", width, f"best {driver.phrase}"), *sector_rows(splits)]
 
 
 def star_rows(level: GameLevel, kept: Collection[ExtraRule], width: int) -> list[Row]:
@@ -109,11 +146,7 @@ def stars_and_sectors(
     """The stars of a level, and where there is room beside them, the sectors of one's best drive. ``width``: of all, more
     than ``COLUMN``."""
     stars = star_rows(level, kept, COLUMN - GAP)
-    sectors = (
-        []
-        if best is None
-        else [ruled_title("sectors", width - COLUMN, f"best {best[0].phrase}"), *sector_rows(best[1])]
-    )
+    sectors = [] if best is None else _sector_rows(*best, width - COLUMN)
     if not sectors or COLUMN + max(map(row_width, sectors)) > width:
         return [row(" ", *each) for each in stars]
     return [row(" ", *each) for each in side_by_side(stars, sectors, COLUMN)]

@@ -52,7 +52,7 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings
-from kit.tui.rows.level_card_rows import level_card
+from kit.tui.rows.level_card_rows import Company, Rival, best_splits, level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_pictures import ghost_driver, ghost_look, ghost_marks, ghost_paths
@@ -110,7 +110,7 @@ class LevelDrive(WatchScreen):
     """
 
     help_notes = (LETTER_NOTES,)
-    shows_program = False
+    has_card = True
     screen_actions = ScreenActions(
         "level",
         ("drive_keys", "stop_robot", "restart", "edit_file", "pause", "speed", "help", "back"),
@@ -141,6 +141,8 @@ class LevelDrive(WatchScreen):
         self._level = level
         self._ghosts = tuple(ghosts)
         self._reference = next((each for each in self._ghosts if each.name == "reference"), None)
+        rivals = (Rival(ghost_look(each)[0], ghost_driver(each), each.seconds) for each in self._ghosts)
+        self._company = Company(tuple(rivals), best_splits(self._ghosts))
         self._ghost_paths = tuple(way for ghost in self._ghosts for way in ghost_paths(ghost))
         self._with_ghosts = True
         self._progress = journal
@@ -290,9 +292,18 @@ class LevelDrive(WatchScreen):
 
     # What is shown
 
+    @property
+    def shows_program(self) -> bool:
+        """One that drives the level; nobody reads the code that turns keys into speeds."""
+        return self._driver is DriverKind.CONTROLLER
+
+    @property
+    def program_note(self) -> str:
+        return "e edits it" if self._may_edit else ""
+
     def _card(self, width: int, room: int) -> list[Row]:
         reference = reference_seconds(self._level)
-        card = level_card(self._level, self._driver, reference, self._kept, width, room)
+        card = level_card(self._level, self._driver, reference, self._kept, width, room, self._company)
         self._task_in_sight = "task" in card and self.query_one("#panel").display
         return [each for part in card.values() for each in part]
 

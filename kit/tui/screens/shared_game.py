@@ -57,7 +57,7 @@ class SharedScreen(WatchScreen):
 
     help_notes = (LETTER_NOTES[:3],)
     help_title = "Two players"
-    has_instruments = False
+    has_card = True
     escape_leaves = True
     player: int | None = None
     """The player at this screen; None watches."""
@@ -144,6 +144,8 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         self._phase = SharedPhase.WAITING
         self._recorder: Recorder | None = None
         self._film: Recording | None = None
+        self._shows_card = True
+        """Whether there was room for the players below the robot's figures."""
         self.player = HOST
 
     def open_world(self) -> None:
@@ -215,15 +217,18 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         if self._mode is SharedMode.TAG:
             metrics = replace(view.metrics, target_m=None, reached_s=None)
             view = replace(view, metrics=metrics, scene=replace(view.scene, targets=()))
+        rows = super()._panel_rows(view)
+        if self._shows_card:
+            return rows
         panel = self._rows("panel").content_size
-        rows, card = super()._panel_rows(view), self._card(panel.width - 1, panel.height)
-        return rows if not card or rows[-len(card) :] == tuple(card) else tuple(card)
+        return tuple(self._card(panel.width - 1, panel.height))
 
     def _card(self, width: int, room: int) -> list[Row]:
         if self.state is None:
             return []
         card = players_card(self._mode, self.state, self.player, width)
-        return card if len(card) <= room else []
+        self._shows_card = len(card) <= room
+        return card if self._shows_card else []
 
     def _newest_scene(self) -> Scene:
         return self._with_targets_and_ghosts(super()._newest_scene())

@@ -20,10 +20,15 @@ from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.agent_rows import AGENT_WIDTH, agent_panel
 from kit.tui.rows.instrument_rows import (
+    CARD_WIDTH,
+    CODE_WIDTH,
+    MARGIN,
+    Listing,
+    PanelWidths,
     SpeedHistory,
     figure_rows,
     instruments,
-    panel_width,
+    panel_widths,
     tells_messages,
     with_charts,
 )
@@ -85,8 +90,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
     """Whether a large screen has charts, messages and the program in its panel."""
     escape_leaves: ClassVar[bool] = False
     """Whether Esc ends the kit where there is no screen to go back to: no program of the student's hears it."""
-    shows_program: ClassVar[bool] = True
-    """Whether the program's code is what fills the rest of it."""
+    has_card: ClassVar[bool] = False
+    """Whether the panel has a card as well: of a level, of two players."""
 
     DEFAULT_CSS = f"""
     WatchScreen {{ layout: vertical; }}
@@ -143,10 +148,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         """What the robot's laser has seen of the world; None before it has been asked for, and in a new world."""
         self._mapper: LaserMapper | None = None
         self._no_walls: FloatArray | None = None
-        self._walls: FloatArray | None = None
-        """Of the world for which the panel has its width."""
-        self._instruments_width = 0
-        """Columns of the panel with instruments; 0 where it has none."""
+        self._widths = PanelWidths()
+        """Of the panel with instruments; nothing where it has none."""
         self._tells_messages = False
         """Whether the panel has the newest messages."""
 
@@ -350,14 +353,12 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         view = self.view
         if view is None or not self.is_current:
             return
-        if view.scene.walls is not self._walls:  # another world
-            self._walls = view.scene.walls
-            self._fit_panel()
+        self._fit_panel()
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
         panel = self._panel_rows(view)
         self._rows("panel").show(panel)
-        self._tells_messages = self._instruments_width > 0 and tells_messages(panel)
+        self._tells_messages = self._widths.total > 0 and tells_messages(panel)
         self._rows("messages").show(self.message_rows(view))
         self._show_agent(view)
 
@@ -373,30 +374,44 @@ class WatchScreen(RowsScreen[None], DriveScreen):
 
     def _fit_panel(self) -> None:
         """Gives the panel what the picture does not need of the screen."""
-        if self.has_instruments:
-            bounds = None if self.view is None else self.view.scene.bounds
-            shape = math.inf if bounds is None else bounds.width / bounds.height
-            self._instruments_width = panel_width(*self.size, shape)
-            self.query_one("#panel").styles.width = self._instruments_width or PANEL_WIDTH
+        if not self.has_instruments:
+            return
+        bounds = None if self.view is None else self.view.scene.bounds
+        shape = math.inf if bounds is None else bounds.width / bounds.height
+        has_program = self.view is not None and self.view.program is not None and self.shows_program
+        wanted = CARD_WIDTH if self.has_card else CODE_WIDTH if has_program else 0
+        widths = panel_widths(*self.size, shape, wanted)
+        if widths != self._widths:
+            self._widths = widths
+            self.query_one("#panel").styles.width = widths.total + MARGIN if widths.total else PANEL_WIDTH
 
     def _panel_rows(self, view: View) -> tuple[Row, ...]:
         mode = self.drive.choice.mode if self.shows_mode else None
         self._history.add(view)
-        panel, width = self._rows("panel").content_size, self._instruments_width - 2
+        panel, widths = self._rows("panel").content_size, self._widths
         title, figures = self._figures(view, mode)
-        if self._instruments_width:
-            figures = figure_rows(title, figures, width)
-        card = self._card(panel.width - 1, panel.height - len(figures))
-        if not self._instruments_width:
+        if not widths.total:
+            card = self._card(panel.width - 1, panel.height - len(figures))
             if self.has_instruments:
                 size = panel.width - 1, panel.height - len(card)
                 figures = with_charts(view, self._history, figures, size)
             return (*figures, *card)
+        figures = figure_rows(title, figures, widths.instruments)
+        card = self._card(widths.card, panel.height - (0 if widths.beside else len(figures)))
         if view.program != self._program[0]:
             self._program = view.program, _lines_of(view.program)
-        program = self._program[1] if self.shows_program else ()
-        size = width, panel.height - len(card)
-        return (*instruments(view, self._history, figures, program, size), *card)
+        program = Listing(self._program[1] if self.shows_program else (), self.program_note)
+        return instruments(view, self._history, figures, program, card, widths, panel.height)
+
+    @property
+    def shows_program(self) -> bool:
+        """Whether the program's code fills the rest of a large screen's panel."""
+        return True
+
+    @property
+    def program_note(self) -> str:
+        """What is said beside the program's name."""
+        return "^E edits it"
 
     def _figures(self, view: View, mode: str | None) -> tuple[str, Sequence[Row]]:
         """What the panel begins with and its title, which a large screen shows. ``mode``: how keys drive; None: they do not."""

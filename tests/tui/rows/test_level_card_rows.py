@@ -15,6 +15,9 @@ from kit.tui.rows.level_card_rows import (
     BY_WORTH,
     COLUMN,
     PARTS,
+    WIDE,
+    Company,
+    Rival,
     best_splits,
     level_card,
     star_line,
@@ -34,12 +37,14 @@ def flat(card: dict[str, list[Row]]) -> list[Row]:
 @pytest.mark.parametrize("width", [21, 40, 58])
 def test_a_card_keeps_to_its_width_and_its_room(level: GameLevel, width: int) -> None:
     reference = reference_seconds(level)
-    whole = flat(level_card(level, DriverKind.KEYS, reference, (), width, 1000))
+    company = Company((Rival("R", "the reference", reference or 0.0), Rival("m", "mo", 12.5)))
+    whole = flat(level_card(level, DriverKind.KEYS, reference, (), width, 1000, company))
     assert all(row_width(each) <= width for each in whole)
     text = " ".join(row_text(each) for each in whole)
     assert all(medal.title in text for medal in RUNGS)
+    assert ("mo" in text.split() and "12.50 s" in text) is (width >= WIDE)
     for room in range(len(whole)):
-        card = flat(level_card(level, DriverKind.KEYS, reference, (), width, room))
+        card = flat(level_card(level, DriverKind.KEYS, reference, (), width, room, company))
         assert len(card) <= room
         assert all(each in whole for each in card)
     assert sorted(BY_WORTH) == sorted(PARTS)

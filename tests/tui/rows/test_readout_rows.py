@@ -17,10 +17,17 @@ from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
 from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, stretched_chart, time_chart
 from kit.tui.rows.instrument_rows import (
+    CARD_WIDTH,
+    CODE_WIDTH,
+    COLUMN_GAP,
+    ENOUGH,
+    MARGIN,
+    Listing,
+    PanelWidths,
     SpeedHistory,
     figure_rows,
     instruments,
-    panel_width,
+    panel_widths,
     tells_messages,
     with_charts,
 )
@@ -57,7 +64,17 @@ def test_the_panel_keeps_to_its_size_and_leaves_out_the_least_important(views: l
         history.add(view)
     program = [row(f"line {number}") for number in range(100)]
     for size in ((44, 30), (44, 12), (58, 46), (58, 60)):
-        rows = texts(instruments(views[-1], history, figures(views[-1], size[0]), program, size))
+        rows = texts(
+            instruments(
+                views[-1],
+                history,
+                figures(views[-1], size[0]),
+                Listing(program),
+                (),
+                PanelWidths(size[0]),
+                size[1],
+            )
+        )
         assert len(rows) <= size[1]
         assert max(map(len, rows)) <= size[0]
         assert "robot" in rows[0]
@@ -67,7 +84,7 @@ def test_the_panel_keeps_to_its_size_and_leaves_out_the_least_important(views: l
 def test_a_panel_with_room_tells_the_newest_messages(views: list[View]) -> None:
     view = replace(views[-1], messages=[LogRecord(0, LoggingSeverity.WARN, "fields", "A wall", "", "", 0)])
     for height, is_told in ((46, True), (10, False)):
-        panel = instruments(view, SpeedHistory(), figures(view, 58), (), (58, height))
+        panel = instruments(view, SpeedHistory(), figures(view, 58), Listing(), (), PanelWidths(58), height)
         assert tells_messages(panel) is is_told
         assert any("A wall" in line for line in texts(panel)) is is_told
 
@@ -77,7 +94,9 @@ def test_a_chart_without_room_is_left_out_whole(views: list[View]) -> None:
     for view in views:
         history.add(view)
     for height in range(8, 46):
-        rows = texts(instruments(views[-1], history, figures(views[-1], 58), (), (58, height)))
+        rows = texts(
+            instruments(views[-1], history, figures(views[-1], 58), Listing(), (), PanelWidths(58), height)
+        )
         titles = [number for number, line in enumerate(rows) if line.startswith("── ")]
         for first, last in pairwise([*titles[1:], len(rows)]):
             assert last - first == 1 + CHART_ROWS, (height, rows[first])
@@ -92,19 +111,58 @@ def test_a_chart_without_room_is_left_out_whole(views: list[View]) -> None:
         (120, 35, 1.5, 0),  # the picture needs them
         (120, 36, 1.5, 46),
         (200, 50, 1.5, 60),
+        (200, 50, 0.4, 60),
         (200, 24, 1.0, 0),
     ],
 )
 def test_instruments_get_the_columns_that_the_picture_leaves(
     columns: int, rows: int, shape: float, width: int
 ) -> None:
-    assert panel_width(columns, rows, shape) == width
+    assert panel_widths(columns, rows, shape).total == (width - MARGIN if width else 0)
+
+
+@pytest.mark.parametrize(
+    ("size", "shape", "wanted"),
+    [((200, 50), 0.4, CARD_WIDTH), ((200, 50), 0.8, CARD_WIDTH), ((200, 50), 0.4, CODE_WIDTH)],
+)
+def test_what_belongs_beside_the_instruments_stands_there_where_the_picture_is_narrow(
+    views: list[View], size: tuple[int, int], shape: float, wanted: int
+) -> None:
+    widths = panel_widths(*size, shape, wanted)
+    assert ENOUGH * wanted <= widths.beside <= wanted
+    assert widths.total + MARGIN + 2 * size[1] * shape <= size[0]
+    history = SpeedHistory()
+    for view in views:
+        history.add(view)
+    program = [row(f"line {number} {'x' * 100}") for number in range(100)]
+    card = [row("the card")]
+    shown = instruments(
+        views[-1], history, figures(views[-1], widths.instruments), Listing(program), card, widths, 46
+    )
+    rows = texts(shown)
+    column = widths.instruments + COLUMN_GAP
+    assert rows[0][column:] == "the card"
+    assert all("line" not in each[:column] for each in rows)
+    assert [each[column:].split()[1] for each in rows[2:]] == ["line"] * 44
+    assert max(map(len, rows)) == widths.total
+    assert sum(each.startswith("── ") for each in rows) == 4  # the robot and three charts
+
+
+@pytest.mark.parametrize("shape", [0.9, 1.0])
+def test_code_has_the_width_that_is_left_where_two_columns_have_no_room(shape: float) -> None:
+    widths = panel_widths(200, 50, shape, CODE_WIDTH)
+    assert widths == PanelWidths(CODE_WIDTH)
+    assert panel_widths(200, 50, 1.5, CODE_WIDTH) == panel_widths(200, 50, 1.5)
 
 
 def test_a_program_is_shown_from_its_first_class_on(views: list[View]) -> None:
     lines = ["import rclpy", "", "", "class Mine(Node):", "    pass", *["# more"] * 50]
     program = [row((line, "keyword")) for line in lines]
-    rows = texts(instruments(views[-1], SpeedHistory(), figures(views[-1], 58), program, (58, 40)))
+    rows = texts(
+        instruments(
+            views[-1], SpeedHistory(), figures(views[-1], 58), Listing(program), (), PanelWidths(58), 40
+        )
+    )
     assert not any("import rclpy" in line for line in rows)
     assert any(line.startswith("  4 class Mine") for line in rows)
 
