@@ -37,8 +37,8 @@ def broken_command(line: str, room: int) -> list[str]:
     """A command on as many lines of at most ``room`` characters as it needs, each but the last ending in a backslash.
 
     It is broken between its words. A word that is too long for an indented line begins in the first column of its own; one
-    that is longer than a line is broken too, and then goes on in the first
-    column, for a shell joins what stands before the backslash with what follows the line's end.
+    that is longer than a line is broken too, behind a slash where it has one, and then goes on in the first column, for a shell
+    joins what stands before the backslash with what follows the line's end.
 
     >>> broken_command("  kit run maze --controller avoid", 22)
     ['  kit run maze \\\\', '    --controller avoid']
@@ -57,7 +57,8 @@ def broken_command(line: str, room: int) -> list[str]:
         if first and len(line) - first <= room:  # a word that fits where it begins further left
             line = line.lstrip()
             continue
-        cut = room - 2
+        slash = line.rfind("/", 0, room - 2) + 1
+        cut = slash if slash > first + 2 else room - 2
         while quotes[cut] == "\\":  # what follows a backslash stays with it
             cut -= 1
         quote = quotes[cut]

@@ -51,6 +51,8 @@ class Page:
     """Whether it is read line by line, also aloud: a scale is a sentence, and no mark shows a state."""
     is_roomy: bool = False
     """Whether there is an empty row after each choice."""
+    is_beside: bool = False
+    """Whether something else stands on its left, so that its rows cannot be copied together."""
     glyphs: PlotGlyphs = BLOCK_GLYPHS
 
 
@@ -219,11 +221,16 @@ def _code_rows(block: Code, page: Page) -> list[Row]:
 
 
 def _code_line_rows(line: str, page: Page) -> list[Row]:
-    """What goes on in the middle of a word has no margin: a shell joins it with what stands before the backslash."""
+    """What goes on in the middle of a word has no margin: a shell joins it with what stands before the backslash. Where that
+    cannot be copied, it is indented like the row before, and a word may reach into the margin on the right."""
+    room = page.width + page.margin if page.is_beside else page.width
     made: list[Row] = []
-    for before, part in pairwise(["", *broken_code(line, page.width)]):
-        in_a_word = before.endswith("\\") and not before.endswith(" \\")
-        made.append(_parts(("" if in_a_word else " " * page.margin, ""), (part, Tone.CODE)))
+    for before, part in pairwise(["", *broken_code(line, room)]):
+        margin = " " * page.margin
+        if before.endswith("\\") and not before.endswith(" \\"):
+            margin += " " * min(len(before) - len(before.lstrip()), room - len(part))
+            margin = margin if page.is_beside else ""
+        made.append(_parts((margin, ""), (part, Tone.CODE)))
     return made
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from kit.document.blocks import Choice, Choices, Picture, Text, Tone, labelled_table
+from kit.document.blocks import Choice, Choices, Code, Picture, Text, Tone, labelled_table
 from kit.document.layout import Page, lines_of, rows_of
+from kit.document.rows import MARGIN, row_text
 
 
 @pytest.mark.parametrize("width", [12, 20, 30])
@@ -60,3 +61,21 @@ def test_code_in_a_sentence_has_its_tone_on_a_screen_and_its_marks_where_there_a
 
 def test_a_single_mark_is_a_character_as_others() -> None:
     assert rows_of([Text("the key ` is free")], Page()) == [(("the key ` is free", Tone.PLAIN),)]
+
+
+def test_a_long_path_is_broken_behind_a_slash_and_goes_on_in_the_margin_only_where_it_can_be_copied() -> None:
+    path = "~/robot-kit/lessons/09-your-own-controller/follow/follow.py"
+    code = Code((f"kit play simple --controller {path}",))
+    for is_beside in (False, True):
+        rows = [row_text(each) for each in rows_of([code], Page(40, MARGIN, is_beside=is_beside))]
+        *_, begin, end = rows
+        assert begin.endswith("/\\")
+        assert begin.strip().removesuffix("\\") + end.strip() == path
+        assert end.startswith(" " * MARGIN) is is_beside
+
+
+def test_a_word_beside_something_else_may_reach_into_the_right_margin() -> None:
+    code = Code(("kit play " + "x" * 42,))
+    whole = [row_text(each) for each in rows_of([code], Page(40, MARGIN, is_beside=True))]
+    assert whole[-1].strip() == "x" * 42
+    assert max(map(len, whole)) <= 40 + 2 * MARGIN

@@ -27,6 +27,8 @@ from kit.school.lessons.records import Exercise, LessonScene
 from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
 
 UNANSWERED: Final = re.compile(r"\w+:\s*")
+PROGRAM: Final = re.compile("class |def |async def |@")
+"""What follows a program's imports begins so."""
 """A line of an answers file that has no answer yet."""
 YAML_ENDINGS: Final = (".yaml", ".yml")
 TO_WRITE: Final = ("TODO", "# write this")
@@ -77,8 +79,8 @@ class ExerciseAttempt:
         self._edited_lines: tuple[str, ...] | None = None
         self._curves: TrainingCurves | None = None
         self._drive_loop = DriveLoop()
-        self.changed_line = 1
-        """The first line that the last save has changed, counted from 1."""
+        self._changed_line = 0
+        """The first line that the last save has changed, counted from 1; 0: nothing was saved yet."""
 
     @cached_property
     def scene(self) -> LessonScene | None:
@@ -102,7 +104,7 @@ class ExerciseAttempt:
             return False
         before, self._edited_lines = self._edited_lines, self._read_edited_lines()
         pairs = enumerate(zip_longest(before, self._edited_lines), 1)
-        self.changed_line = next((number for number, (old, new) in pairs if old != new), self.changed_line)
+        self._changed_line = next((number for number, (old, new) in pairs if old != new), self._changed_line)
         return True
 
     def first_todo(self) -> int:
@@ -152,7 +154,7 @@ class ExerciseAttempt:
     def choose(self, file: Path) -> None:
         """Has this file be the one to edit."""
         if file != self.edited_file:
-            self._chosen, self._edited_lines, self.changed_line = file, None, 1
+            self._chosen, self._edited_lines, self._changed_line = file, None, 0
             self._edited_watch = FileWatcher(file)
 
     @property
@@ -160,6 +162,16 @@ class ExerciseAttempt:
         """The line of the edited file to begin at, counted from 1: the one that the last check's first error names; else that
         of the first TODO that is left; else the first."""
         return self.error_line or self.first_todo()
+
+    @property
+    def line_to_show(self) -> int:
+        """The line of the edited file to look at where not all have room, counted from 1: the later one of the last check's first
+        error and of what the last save changed; before both the first TODO, or where the program itself begins."""
+        if line := max(self.error_line, self._changed_line):
+            return line
+        if (line := self.first_todo()) > 1:
+            return line
+        return next((number for number, text in enumerate(self.edited_lines(), 1) if PROGRAM.match(text)), 1)
 
     @property
     def error_line(self) -> int:

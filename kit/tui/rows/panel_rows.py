@@ -16,7 +16,7 @@ LEAST_PANEL: Final = 5
 
 def panel_rows(panels: Sequence[Panel], width: int, room: int, *, upwards: bool = False) -> list[Row]:
     """The panels below each other, each with its title on a rule; what does not fit in ``room`` rows is left out, the last
-    panel that fits in part is cut, at an empty row where it has one. ``upwards``: the first is the lowest, so that at the
+    panel that fits in part is cut, at an empty row where one keeps half of it. ``upwards``: the first is the lowest, so that at the
     bottom of a page it stays where it is when there is less room.
 
     >>> from kit.document.blocks import Text
@@ -38,6 +38,6 @@ def panel_rows(panels: Sequence[Panel], width: int, room: int, *, upwards: bool 
 
 
 def _whole_sections(rows: list[Row]) -> list[Row]:
-    """The rows up to the last empty one below the title; where there is none the last row says that more follow."""
+    """The rows up to the last empty one below the title; where that would leave out most the last row says that more follow."""
     end = max(number for number, each in enumerate(rows) if not each)
-    return rows[:end] if end else [*rows[:-1], row(("...", "dim"))]
+    return rows[:end] if 2 * end >= len(rows) else [*rows[:-1], row(("...", "dim"))]

@@ -256,7 +256,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             scrolls_with="Esc, down" if self._is_writing else "PgDn" if dialogue.is_driving else "down",
             file=self._numbered(lines) if lines else (),
             file_title=work.edited_file.name if work is not None and has_work else "",
-            file_line=max(work.error_line, work.changed_line) - 1 if work is not None and has_work else 0,
+            file_line=work.line_to_show - 1 if work is not None and has_work else 0,
             log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
             panels=self._panels(),
             page_width=width,
@@ -329,7 +329,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     @property
     def _page_of_words(self) -> Page:
-        return Page(text_width(self._width), MARGIN)
+        is_beside = self._layout is not PageLayout.STACKED
+        return Page(text_width(self._width), MARGIN, is_beside=is_beside)
 
     def _show_title(self) -> None:
         width, caption = self.room.width, self._caption()

@@ -23,7 +23,7 @@ MOST_PICTURE: Final = 14
 """Rows of a scene above the words."""
 LEAST_WORDS: Final = 3
 """Rows of the words below it, on the smallest screen."""
-LEAST_FILE: Final = 8
+LEAST_FILE: Final = 4
 """Rows of the student's file below the words; where fewer are left it is not shown."""
 LINES_SEEN: Final = 2
 """Rows of a verdict or a hint that are brought into sight."""
@@ -98,7 +98,7 @@ class LessonContent:
     file_line: int = 0
     """The line of it to look at first, counted from 0."""
     aids: Sequence[Panel] = ()
-    """Below the file, as far as it leaves room."""
+    """Below the file, as far as it leaves room; where it stands below a scene, below the words."""
     log: Sequence[Row] = ()
     """What the student's program printed."""
     panels: Sequence[Panel] = ()
@@ -210,9 +210,13 @@ class LessonPage(Container):
         self._set_height(self._rows("words"), min(kept, self._room) if content.asked else "1fr")
         self._show_words()
         self._show_aside(0 if is_beside or is_below else room - used)
+        if is_short and content.moves is not None:  # the file has no row more than it needs
+            panels = (*content.panels[:1], *content.aids, *content.panels[1:])
+            content = self._content = replace(content, panels=panels, aids=())
         self._show_below(self._room - kept if is_beside and is_roomy else 0)
         if has_work:
-            self.call_after_refresh(self._show_work, content)  # then it has the height that it will have
+            # then it has the height that it will have
+            self.call_after_refresh(self._show_work, content, has_title=not is_below)
 
     def _show_aside(self, room: int) -> None:
         """Panels beside the words and what is asked, where nothing else is. ``room``: rows that both have."""
@@ -234,16 +238,18 @@ class LessonPage(Container):
             blank = [row()] * (room - len(rows) if content.asked else 0)
             self._rows("below").show_all([*blank, *(row(" " * MARGIN, *each) for each in rows)])
 
-    def _show_work(self, content: LessonContent) -> None:
-        """The student's file, around the line to look at, and the end of what the program printed."""
+    def _show_work(self, content: LessonContent, *, has_title: bool) -> None:
+        """The student's file, around the line to look at, and the end of what the program printed. Its title is left out where
+        the row below it has its name."""
         log = content.log[-MOST_LOG + 1 :]
         self._rows("log").show_all([row(("What it printed", "bold")), *log] if log else [])
         work = self._rows("work")
-        room = max(1, work.size.height - 1)
-        top = max(0, min(content.file_line - room // 3, len(content.file) - room))
+        room = max(1, work.size.height - has_title)
+        above = room // 3 if room > 2 * LEAST_FILE else 0
+        top = max(0, min(content.file_line - above, len(content.file) - room))
         more = lines_shown(top, min(room, len(content.file)), len(content.file))
-        head = row((content.file_title, "bold"), (f"  {more}", "dim"))
-        shown = [head, *(fitted(each, work.size.width) for each in content.file[top : top + room])]
+        head = [row((content.file_title, "bold"), (f"  {more}", "dim"))] if has_title else []
+        shown = [*head, *(fitted(each, work.size.width) for each in content.file[top : top + room])]
         columns = min(work.size.width - MARGIN, TEXT_WIDTH)
         left = work.size.height - len(shown) - 1
         work.show([*shown, *(panel_rows(content.aids, columns, left) if columns >= LEAST_ASIDE else [])])

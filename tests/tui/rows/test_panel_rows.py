@@ -26,6 +26,13 @@ def test_a_list_that_is_cut_says_so_and_parts_stay_whole() -> None:
     assert texts([LIST], LEAST_PANEL - 1) == []
 
 
+def test_a_panel_is_not_cut_at_an_empty_row_that_leaves_out_most_of_it() -> None:
+    led = Panel(
+        "led", (Text("four parts:"), *(Text(f"part {number}", is_tight=number > 0) for number in range(9)))
+    )
+    assert texts([led], 10)[-2:] == ["part 4", "..."]
+
+
 def test_the_first_panel_is_the_lowest_of_those_at_the_bottom() -> None:
     for room in range(WHOLE, 2 * WHOLE):
         rows = texts([LIST, PARTS], room, upwards=True)

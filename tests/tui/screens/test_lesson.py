@@ -524,14 +524,37 @@ def test_a_large_terminal_shows_the_world_above_a_short_file_and_then_what_the_p
         await seen(pilot, "your run: r shows it again")
         assert "[no] It reaches the target" in text(pilot)
 
+    async def checks(pilot: Pilot[None]) -> None:
+        await seen(pilot, "what is checked, and its points")
+        lines = rows(pilot)
+        checked = next(line for line in lines if "what is checked" in line)
+        told = next(line for line in lines if "── steps ─" in line)
+        assert checked.index("what is checked") == told.index("steps"), (
+            "above the steps, where the words leave room"
+        )
+
     async def small(pilot: Pilot[None]) -> None:
         await pilot.press("c")
         await seen(pilot, "[no] It reaches the target")
         await pilot.pause(0.5)
         assert not pilot.app.screen.query_one(LessonSceneView).display, "the words need the room"
 
+    stage(student.screen, checks, size=(200, 50))
     stage(student.screen, scene, size=(200, 50))
     stage(student.screen, small)
+
+
+@pytest.mark.long
+def test_few_rows_below_the_words_show_where_the_program_begins(student: Student) -> None:
+    head = '"""What it does."""\n\n' + "import math\n" * 30
+    (student.lesson / "corner" / "starter.py").write_text(f"{head}\n{TURNING}")
+    student.goes_to(CORNER)
+    begins = next(line for line in TURNING.splitlines() if line.startswith(("class", "def")))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, begins)
+
+    stage(student.screen, scene)
 
 
 def steps_row(pilot: Pilot[None]) -> int:
