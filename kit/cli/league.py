@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -71,8 +72,8 @@ def command(context: click.Context, workspace: Path | None, folder: Path | None,
     kit league withdraw NAME            take your entry out
     kit league new FOLDER               a league for a class
 
-    In a race each entrant drives a level alone, from five starts, and the middle drives are compared. At tag two robots share
-    one world: a program is told is_catcher (std_msgs/Bool) and, as goal_pose (geometry_msgs/PoseStamped), where the
+    In a race each entrant drives a level alone, from five starts, and the middle drives are compared; a drive ends after five
+    times the reference drive's time. At tag two robots share one world: a program is told is_catcher (std_msgs/Bool) and, as goal_pose (geometry_msgs/PoseStamped), where the
     other robot is; it has a namespace of its own and can use no name outside. Each second counts against the catcher, or
     against the other one while that alone stands still; each pair plays twice. Programs are confined as when they are graded.
 
@@ -187,6 +188,9 @@ def run(context: click.Context, level: str | None, house: bool | None, executor:
 
     Exit code: 0 all matches are driven; 1 some are not; 2 the league cannot be run.
     """
+    from kit.learning.training.run_upkeep import format_seconds
+    from kit.school.game.league.league import seconds_left
+
     with _open_league(context) as (league, _):
         if league.is_mine:
             programme = league.programme()
@@ -197,12 +201,16 @@ def run(context: click.Context, level: str | None, house: bool | None, executor:
             keys = league.prepare_run()
         except OSError as error:
             messages.fail(messages.describe_error(error))
-        done: list[str] = []
+        jobs = [each for each in league.jobs() if each.key in keys]
+        done: set[str] = set()
+        begun_s = time.monotonic()
 
         def count(key: str) -> None:
-            done.append(key)
-            if sys.stderr.isatty():
-                click.echo(f"\r{len(done)} of {len(keys)} driven", nl=False, err=True)
+            done.add(key)
+            left_s = seconds_left(jobs, done, time.monotonic() - begun_s)
+            if sys.stderr.isatty() and left_s is not None:
+                told = f"{len(done)} of {len(keys)} driven, about {format_seconds(left_s)} left"
+                click.echo(f"\r{told:<60}", nl=False, err=True)
 
         try:
             executor.run(league, keys, count)
@@ -285,15 +293,17 @@ def verify(context: click.Context) -> None:
 @command.command("work", hidden=True)
 @click.argument("league_folder", type=click.Path(path_type=Path))
 @click.option("--shard", help="Share i of n, such as 0/4.")
-def work(league_folder: Path, shard: str | None) -> None:
+@click.option("--judgements", type=click.Path(path_type=Path), help="Where judgements are kept.")
+@click.option("--judge", is_flag=True, help="Judge results instead.")
+def work(league_folder: Path, shard: str | None, judgements: Path | None, judge: bool) -> None:
     """Drive the matches whose keys come on standard input, or a share of all that are missing."""
     from kit.school.game.league.entries import LeagueError
     from kit.school.game.league.league import League
 
-    league = League(league_folder)
+    league = League(league_folder, judgements)
     try:
         if shard is None:
-            serve_keys(league.run_job)
+            serve_keys(league.judge_key if judge else league.run_job)
             return
         share = read_shard(shard)
         if share is None:

@@ -84,8 +84,14 @@ def platform_key() -> str:
 
 
 def share_drives(recordings: Sequence[Recording], file: Path, remarks: Sequence[str] = ()) -> None:
-    """Writes the inputs of a driver's recordings of one level, whole or not at all. ``remarks``: what went wrong with each
-    program. Raises OSError."""
+    """Writes what ``pack_drives`` packs, whole or not at all. Raises OSError."""
+    content = pack_drives(recordings, remarks)
+    if not _holds(file, content):  # else it stays as old as it is
+        write_atomically(file, content, follows_links=False)
+
+
+def pack_drives(recordings: Sequence[Recording], remarks: Sequence[str] = ()) -> bytes:
+    """Packs the inputs of a driver's recordings of one level as a file. ``remarks``: what went wrong with each program."""
     content = {
         "format": FORMAT,
         "platform": platform_key(),
@@ -101,8 +107,7 @@ def share_drives(recordings: Sequence[Recording], file: Path, remarks: Sequence[
     }
     data = io.BytesIO()
     np.savez_compressed(data, drives=np.frombuffer(json.dumps(content).encode(), dtype=np.uint8))
-    if not _holds(file, data.getvalue()):  # else it stays as old as it is
-        write_atomically(file, data.getvalue(), follows_links=False)
+    return data.getvalue()
 
 
 def _inputs_that_count(inputs: Sequence[Input]) -> tuple[Input, ...]:

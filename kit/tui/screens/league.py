@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import time
 from asyncio import Lock, to_thread
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import ClassVar, Final
 
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.worker import get_current_worker
+from textual.worker import Worker, get_current_worker
 
 from kit.controllers import user_controllers
 from kit.dialogue.actions import ScreenActions
@@ -23,7 +25,7 @@ from kit.document.rows import Row, at_both_edges, broken, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
 from kit.school.game.league.entries import LeagueError, program_of_agent, renew_beside_former, submit
-from kit.school.game.league.league import League
+from kit.school.game.league.league import RACE_LIMIT, League, seconds_left
 from kit.school.game.league.league_blocks import (
     KEYS,
     level_grid,
@@ -35,6 +37,7 @@ from kit.school.game.league.league_blocks import (
 from kit.school.game.league.standings import Match, Standings, match_film, read_standings
 from kit.school.game.two_players import STILL_SECONDS
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.training_rows import clock
 from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.level_drive import LeftError
@@ -113,16 +116,21 @@ class LeagueScreen(RowsScreen[None]):
         """Reads the standings, once at a time: all that ask while that goes on share one more reading after it. ``note``: is told
         then; None: what is told stays."""
         self._asked += 1
-        asked = self._asked
+        asked, worker = self._asked, get_current_worker()
+
+        def show_so_far(standings: Standings) -> None:
+            self._end_if_left(worker)
+            self._show_so_far(standings)
+
         try:
             async with self._reading:
                 if self._read_for < asked:
                     newest = self._asked
-                    self._take(await to_thread(read_standings, self._league, self._show_so_far))
+                    self._take(await to_thread(read_standings, self._league, show_so_far))
                     self._read_for = newest
         except LeftError:
             return
-        except LeagueError as error:
+        except (LeagueError, OSError) as error:
             note = str(error)
         if note is not None:
             self._note = note
@@ -144,7 +152,6 @@ class LeagueScreen(RowsScreen[None]):
 
     def _show_so_far(self, standings: Standings) -> None:
         """Shows what has been read at first, from the thread that reads; later what is whole stays until it has been read anew."""
-        self._end_if_left()
         if self._standings is not None and not self._standings.unread:
             return
 
@@ -155,10 +162,10 @@ class LeagueScreen(RowsScreen[None]):
 
         self.app.call_from_thread(show)
 
-    def _end_if_left(self) -> None:
+    def _end_if_left(self, worker: Worker[object]) -> None:
         """Ends what a thread computes for a worker that nobody waits for any more: only the worker itself ends by being
         cancelled. Raises LeftError."""
-        if not self.is_attached or get_current_worker().is_cancelled:
+        if not self.is_attached or worker.is_cancelled:
             raise LeftError("The league was left.")
 
     @work(exclusive=True, group="maps")
@@ -286,7 +293,8 @@ class LeagueScreen(RowsScreen[None]):
         self._show_note("Running the drives again ...")
         try:
             match = self._matches[self._match]
-            film = await to_thread(match_film, self._league, match, self._end_if_left)
+            end_if_left = partial(self._end_if_left, get_current_worker())
+            film = await to_thread(match_film, self._league, match, end_if_left)
         except LeftError:
             return
         except LeagueError as error:
@@ -359,14 +367,16 @@ class LeagueScreen(RowsScreen[None]):
         keys: tuple[str, ...] = ()
         try:
             keys = await to_thread(self._league.prepare_run)
-            done = 0
+            jobs = [each for each in await to_thread(self._league.jobs) if each.key in keys]
+            done: set[str] = set()
+            begun_s = time.monotonic()
 
             def count(key: str) -> None:
-                nonlocal done
                 if not self.is_attached:
                     raise LeftError("The league was left.")
-                done += 1
-                self.app.call_from_thread(self._show_count, done, len(keys))
+                done.add(key)
+                left_s = seconds_left(jobs, done, time.monotonic() - begun_s)
+                self.app.call_from_thread(self._show_count, len(done), len(keys), left_s)
                 self.app.call_from_thread(self._read, None)
 
             if keys:
@@ -388,8 +398,11 @@ class LeagueScreen(RowsScreen[None]):
         self._driving = ""
         self._show()
 
-    def _show_count(self, done: int, count: int) -> None:
-        self._driving = f"Driving: {done} of {count}. Who leaves goes on later." if done < count else ""
+    def _show_count(self, done: int, count: int, left_s: float | None = None) -> None:
+        left = "" if left_s is None else f", about {clock(left_s)} left"
+        self._driving = (
+            f"Driving: {done} of {count}{left}. You can leave and go on later." if done < count else ""
+        )
         self._show()
 
     def _show_note(self, note: str) -> None:
@@ -401,6 +414,7 @@ NOTES: Final = (
     ("rating", "400 points more: wins ten times as often (Bradley-Terry)"),
     ("95 %", "where the rating lies, as far as these matches tell"),
     ("race", "each drives alone from five starts; the middle drives compare"),
+    ("", f"a drive ends after {RACE_LIMIT:.0f} times the reference's time"),
     ("tag", "two robots in one world; a second counts against the catcher"),
     ("", f"or the other one where that alone stands still for {STILL_SECONDS:.0f} s"),
 )

@@ -2,18 +2,21 @@
 
 Whoever owns the folder runs the matches, and only files of the owner count as results; others may enter and look. A result
 holds commands, never a score: everybody's own kit runs the recordings again, and judges them. A programme's races are driven
-by each entrant alone, from the starts of every program, so a match compares two drives; at tag two programs share one world,
-and each pair plays twice, so that each of them begins once as the catcher. Nothing depends on the time of day.
+by each entrant alone, from the starts of every program, so a match compares two drives; a drive ends after five times the
+reference drive's time, and once more than half of its drives have not arrived, an entrant drives no more on that level: its
+middle drive has not arrived either. At tag two programs share one world, and each pair plays twice, so that each of them begins
+once as the catcher. Nothing depends on the time of day.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import stat
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
@@ -24,7 +27,7 @@ from typing import Any, ClassVar, Final
 
 from kit import __version__
 from kit.controllers import ControllerFile
-from kit.host.job_executors import in_shard, read_result
+from kit.host.job_executors import JobPool, in_shard, read_result
 from kit.host.job_folder import JobFolder
 from kit.host.private_folder import private_folder
 from kit.host.python_command import python_command
@@ -45,16 +48,17 @@ from kit.school.game.league.entries import (
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
 from kit.school.game.levels import GameLevel, UnknownLevel, find_level
 from kit.school.game.race import DriverKind, RaceFinish, race_controller
+from kit.school.game.references import reference_seconds
 from kit.school.game.shared_drives import (
     MAX_FILE_BYTES,
     DriveRefused,
     check_inputs,
     drives_again,
+    pack_drives,
     platform_key,
     read_shared_drives,
-    share_drives,
 )
-from kit.school.game.starts import draw_seeds, scenario_from
+from kit.school.game.starts import STARTS, draw_seeds, scenario_from
 from kit.school.game.two_players import TAG_RULE, TAG_SECONDS, CannotShare, SharedPhase
 from kit.sim.simulation import Simulation
 from kit.workspace import Workspace, make_private_folder, open_common_folder, write_atomically
@@ -66,12 +70,14 @@ RACES: Final = ("left-turn", "parking", "slalom", "racetrack")
 """Levels of a new league's races."""
 TAG: Final = ("two-doors", "the-forest")
 """Levels on which a new league plays tag."""
+RACE_LIMIT: Final = 5.0
+"""A drive of a race ends after this many times the reference drive's time, or at the level's own limit."""
 WALL_LIMIT_S: Final = 300.0
 """Of one drive [s of wall clock]."""
 MAX_JUDGED: Final = 20_000
 """Results whose judgement is kept in memory."""
 _RUNNING_AGAIN: Final = threading.Lock()
-"""Held while recordings are run again: threads that compute side by side hold each other up, and would judge the same twice."""
+"""Held while recordings are run again: threads that compute side by side hold each other up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +100,15 @@ class LeagueJob:
     level: GameLevel
     entrants: tuple[Entry, ...]
     """One for a drive; for a game of tag two, of which the first begins as the catcher."""
+
+    @property
+    def is_tag(self) -> bool:
+        return len(self.entrants) > 1
+
+    @property
+    def expected_s(self) -> float:
+        """About how long it is driven, in all [simulated s]."""
+        return TAG_SECONDS if self.is_tag else 0.5 * STARTS * self.level.time_limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,7 +212,8 @@ class League(JobFolder):
         return [each for each in self.entries() if not each.problem]
 
     def jobs(self) -> list[LeagueJob]:
-        """All that has to be driven: none while nobody meets anybody. Raises LeagueError."""
+        """All that has to be driven: none while nobody meets anybody. Races of short levels come first, so that there are soon
+        matches and a rating. Raises LeagueError."""
         entrants, programme = self.entrants(), self.programme()
         pairs = pairs_of(entrants)
         racing = [each for each in entrants if any(each in pair for pair in pairs)]
@@ -208,13 +224,14 @@ class League(JobFolder):
             for pair in pairs
             for players in (pair, pair[::-1])
         ]
-        return [*drives, *games]
+        return sorted([*drives, *games], key=lambda job: job.expected_s)
 
     # What a job folder says
 
     @property
     def worker_command(self) -> list[str]:
-        return python_command("kit", "league", "work", str(self.folder.absolute()))
+        kept = [] if self.judgements is None else ["--judgements", str(self.judgements.absolute())]
+        return python_command("kit", "league", "work", str(self.folder.absolute()), *kept)
 
     @property
     def shard_command(self) -> list[str]:
@@ -231,12 +248,18 @@ class League(JobFolder):
         return tuple(key for key in waiting if in_shard(key, shard))
 
     def run_job(self, key: str) -> None:
-        """Drives or plays a job; its result is written whole or not at all. Raises OSError and LeagueError."""
-        job = next((each for each in self.jobs() if each.key == key), None)
+        """Drives or plays a job, and judges it for this user; its result is written whole or not at all. Raises OSError and
+        LeagueError."""
+        job = self._find_job(key)
         if job is None:
             return  # somebody has withdrawn meanwhile
-        recordings, remarks = run_league_job(job, self.programme().confinement)
-        share_drives(recordings, self.result_file(key), remarks)
+        content = pack_drives(*run_league_job(job, self.programme().confinement))
+        if self.judgements is not None:  # before others can see it, who would judge it once more
+            _judge_once(self.judgements, content, job.level, len(job.entrants))
+        write_atomically(self.result_file(key), content, follows_links=False)
+
+    def _find_job(self, key: str) -> LeagueJob | None:
+        return next((each for each in self.jobs() if each.key == key), None)
 
     def record_loss(self, key: str) -> None:
         """Leaves nothing: a job that was lost waits for the next run. Raises OSError where no result can be written, on a
@@ -278,6 +301,29 @@ class League(JobFolder):
             if self.judgements is None:
                 return _judge(content, job.level, len(job.entrants))
             return _judge_once(self.judgements, content, job.level, len(job.entrants))
+
+    def unjudged(self) -> list[str]:
+        """The keys of the jobs with a result whose judgement this user has not kept; none where none are kept. Raises
+        LeagueError."""
+        keys = []
+        for job in self.jobs() if self.judgements is not None else ():
+            content = self._read_result(job)
+            if content is not None and self.judgements is not None:
+                file = _judgement_file(self.judgements, content, job.level, len(job.entrants))
+                keys += [] if file.exists() else [job.key]
+        return keys
+
+    def judge_key(self, key: str) -> None:
+        """Judges a job, so that its judgement is kept. Raises LeagueError."""
+        job = self._find_job(key)
+        if job is not None:
+            self.judge(job)
+
+    def judge_apart(self, keys: Sequence[str], on_done: Callable[[str], object]) -> None:
+        """Judges jobs in processes of their own. ``on_done``: called with each key that is through, one at a time; what it raises
+        ends this. Raises OSError."""
+        command = [*self.worker_command, "--judge"]
+        JobPool(command, keys, os.cpu_count() or 1, on_done, lambda key: None).run()
 
     def recordings(self, job: LeagueJob) -> tuple[Recording, ...]:
         """The recordings of a job, run again: of a drive from each start, of a game one. Raises LeagueError."""
@@ -342,29 +388,32 @@ def run_league_job(job: LeagueJob, confinement: Confinement) -> tuple[list[Recor
         if len(programs) > 1:
             game = play_tag(job.level, programs, confinement, GRADER_LIMITS)
             return [game.recording], list(game.failures)
-        drives: list[tuple[RaceFinish, Recording]] = []
-        for seed in draw_seeds(job.level, Random(job.key)):
-            if drives and drives[0][0].failure is not None and not drives[0][1].ticks:
-                drives.append(
-                    (drives[0][0], _undriven(job.level, seed))
-                )  # it would not start from here either
+        recordings: list[Recording] = []
+        remarks: list[str] = []
+        lost = 0
+        seeds = draw_seeds(job.level, Random(job.key))
+        for seed in seeds:
+            has_not_started = bool(recordings and remarks[0] and not recordings[0].ticks)
+            if has_not_started or lost > len(seeds) // 2:
+                recordings.append(_undriven(job.level, seed))
+                remarks.append(remarks[0] if has_not_started else "")  # it would not start from here either
                 continue
-            drives.append(
-                race_controller(
-                    job.level,
-                    programs[0],
-                    wall_limit_s=WALL_LIMIT_S,
-                    seed=seed,
-                    confinement=confinement,
-                    limits=GRADER_LIMITS,
-                )
+            finish, recording = race_controller(
+                job.level,
+                programs[0],
+                wall_limit_s=WALL_LIMIT_S,
+                seed=seed,
+                confinement=confinement,
+                limits=GRADER_LIMITS,
             )
-    remarks = ["" if finish.failure is None else str(finish.failure) for finish, _ in drives]
-    return [recording for _, recording in drives], remarks
+            lost += not finish.reached
+            recordings.append(recording)
+            remarks.append("" if finish.failure is None else str(finish.failure))
+    return recordings, remarks
 
 
 def _undriven(level: GameLevel, seed: int) -> Recording:
-    """The recording of a program that has not started: without a tick."""
+    """The recording of a drive that does not take place: without a tick."""
     scenario = scenario_from(level, seed)
     simulation = Simulation(scenario.world, seed=seed, has_subscribers=lambda topic: False)
     return Recorder.for_scenario(scenario, simulation).recording()
@@ -389,8 +438,9 @@ def _copy_program(entry: Entry, folder: Path, number: int) -> ControllerFile:
     return replace(entry.program, file=file)
 
 
+@lru_cache
 def read_programme(content: bytes, folder: Path) -> Programme:
-    """Reads a league's manifest. Raises LeagueError."""
+    """Reads a league's manifest, of equal content once: its levels' worlds are looked at. Raises LeagueError."""
     file = folder / MANIFEST
     try:
         told = json.loads(content)
@@ -405,6 +455,7 @@ def read_programme(content: bytes, folder: Path) -> Programme:
         raise LeagueError(f"{file}: a league needs at least one level, in races or tag.")
     try:
         races, tag = (tuple(find_level(each) for each in dict.fromkeys(names[kind])) for kind in names)
+        races = tuple(map(_with_race_limit, races))
         for level in tag:
             tag_scenario(level)
     except (UnknownLevel, CannotShare) as error:
@@ -412,13 +463,25 @@ def read_programme(content: bytes, folder: Path) -> Programme:
     return Programme(title, races, tag, confinement, has_house)
 
 
+def _with_race_limit(level: GameLevel) -> GameLevel:
+    """A level whose drives end soon after all who arrive have arrived."""
+    reference = reference_seconds(level)
+    if reference is None:
+        return level
+    return replace(level, time_limit=min(level.time_limit, math.ceil(RACE_LIMIT * reference)))
+
+
+def seconds_left(jobs: Collection[LeagueJob], done: Collection[str], gone_s: float) -> float | None:
+    """How long the rest of some jobs takes, by those that are done after ``gone_s``; None while none is."""
+    made = sum(each.expected_s for each in jobs if each.key in done)
+    left = sum(each.expected_s for each in jobs if each.key not in done)
+    return gone_s * left / made if made else None
+
+
 @lru_cache(MAX_JUDGED)
 def _judge_once(folder: Path, content: bytes, level: GameLevel, players: int) -> JudgedJob | None:
     """Judges the content of a result once, and keeps that in ``folder``: thousands of drives would take minutes each time."""
-    told = json.dumps(
-        [__version__, platform_key(), repr(level), players, TAG_RULE, hashlib.sha256(content).hexdigest()]
-    )
-    file = folder / f"{hashlib.sha256(told.encode()).hexdigest()[:32]}.json"
+    file = _judgement_file(folder, content, level, players)
     with suppress(OSError, ValueError, KeyError, TypeError):
         return _read_judgement(read_result(file))
     judged = _judge(content, level, players)
@@ -426,6 +489,14 @@ def _judge_once(folder: Path, content: bytes, level: GameLevel, players: int) ->
         make_private_folder(folder)
         write_atomically(file, json.dumps({"judged": None if judged is None else asdict(judged)}).encode())
     return judged
+
+
+def _judgement_file(folder: Path, content: bytes, level: GameLevel, players: int) -> Path:
+    """Where the judgement of a result's content is kept."""
+    told = json.dumps(
+        [__version__, platform_key(), repr(level), players, TAG_RULE, hashlib.sha256(content).hexdigest()]
+    )
+    return folder / f"{hashlib.sha256(told.encode()).hexdigest()[:32]}.json"
 
 
 def _read_judgement(content: dict[str, Any]) -> JudgedJob | None:

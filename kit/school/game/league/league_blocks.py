@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
 from kit.plain_text import join_names
 from kit.school.game.league.house import SPEEDS
-from kit.school.game.league.league import Programme
+from kit.school.game.league.league import RACE_LIMIT, Programme
 from kit.school.game.league.standings import DRAW, Match, Place, Standings
 from kit.school.game.two_players import TAG_RULE
 
@@ -87,7 +87,10 @@ def rules_blocks(programme: Programme, words: LeagueWords) -> list[Block]:
     races, tag = (
         join_names([level.title for level in levels]) for levels in (programme.races, programme.tag)
     )
-    alone = "each entrant drives alone, from five starts; the middle drives are compared."
+    alone = (
+        "each entrant drives alone, from five starts; the middle drives are compared. "
+        f"A drive ends after {RACE_LIMIT:.0f} times the reference's time."
+    )
     together = f"two robots in one world. {TAG_RULE}"
     rules = [
         ("Races", f"{races}: {alone}") if races else None,

@@ -118,17 +118,30 @@ class Standings:
 def read_standings(
     league: League, on_progress: Callable[[Standings], object] = lambda standings: None
 ) -> Standings:
-    """Runs all recordings of a league again and judges them. Slow: about a second for every ten matches that were not judged
-    before. ``on_progress``: gets the standings so far, at once and then as the results are read; what it raises ends the
-    reading. Raises LeagueError."""
+    """Runs the recordings of a league that were not judged before again, in processes of their own, and judges them: about a
+    second for each. ``on_progress``: gets the standings so far, at once and then as the results are read; what it raises ends
+    the reading. Raises LeagueError and OSError."""
     programme, entries, jobs = league.programme(), league.entries(), league.jobs()
     judged: dict[str, JudgedJob | None] = {}
     told_s = -math.inf
-    for job in jobs:
+
+    def tell(key: str = "") -> None:
+        nonlocal told_s
         if time.monotonic() - told_s >= PROGRESS_S:
             on_progress(_standings_of(programme, entries, jobs, judged))
             told_s = time.monotonic()
-        judged[job.key] = league.judge(job)
+
+    def take(key: str) -> None:
+        judged[key] = league.judge(by_key[key])
+        tell()
+
+    by_key = {job.key: job for job in jobs}
+    unjudged = league.unjudged()
+    tell()
+    for key in by_key:
+        if key not in unjudged:
+            take(key)
+    league.judge_apart([key for key in by_key if key in unjudged], take)
     return _standings_of(programme, entries, jobs, judged)
 
 

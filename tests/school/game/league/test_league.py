@@ -6,12 +6,9 @@ import io
 import json
 import os
 import shutil
-import threading
 import time
 from collections import Counter
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -47,6 +44,7 @@ from kit.school.game.league.league import (
     drive_job,
     own_league,
     read_programme,
+    seconds_left,
     tag_job,
 )
 from kit.school.game.league.league_blocks import matches_table, standings_table, summary_blocks
@@ -61,7 +59,8 @@ from kit.school.game.league.standings import (
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
 from kit.school.game.league.verification import differing_jobs
 from kit.school.game.levels import find_level
-from kit.school.game.race import DriverKind, RaceFinish, race_controller
+from kit.school.game.race import DriverKind, RaceFinish, middle_drive, race_controller
+from kit.school.game.references import reference_seconds
 from kit.school.game.shared_drives import digest_of, share_drives
 from kit.school.game.shared_sockets import user_name
 from kit.school.game.starts import OWN_SEED, STARTS
@@ -208,6 +207,28 @@ def test_a_program_that_does_not_start_is_started_once_for_each_level(
 
 
 @pytest.mark.long
+def test_who_has_not_arrived_three_times_is_spared_the_other_two_drives(tmp_path: Path) -> None:
+    """The middle drive has not arrived either way; and no drive takes much longer than the reference does."""
+    league = make_league(tmp_path, laser=LASER, stands=STANDS)
+    league.change(replace(league.programme(), races=(find_level("parking"),)))
+    (level,) = league.programme().races
+    reference = reference_seconds(level)
+    assert reference is not None
+    assert level.time_limit < 6 * reference
+    job = next(each for each in league.jobs() if each.entrants[0].name == "stands")
+    league.run_job(job.key)
+    judged = league.judge(job)
+    assert judged is not None
+    driven = [each.seconds for each in judged.finishes if each.seconds]
+    assert driven == pytest.approx([level.time_limit] * 3)
+    assert len(judged.finishes) == STARTS
+    assert not judged.finishes[middle_drive(judged.finishes)].reached
+    assert any(each.ticks for each in league.recordings(job) if each.seed == OWN_SEED), "that it can be shown"
+    found = differing_jobs(league)
+    assert (found.compared, found.differing) == (1, ())
+
+
+@pytest.mark.long
 def test_two_play_tag_in_one_world_and_each_begins_once(tmp_path: Path) -> None:
     league = make_league(tmp_path, races=False, tag=True, chases=CHASES, stands=STANDS)
     standings = run(league)
@@ -318,37 +339,47 @@ def test_a_clock_that_was_set_back_changes_nothing(driven: League) -> None:
 def test_what_was_judged_is_kept_for_the_next_look_and_damage_of_it_is_passed_over(
     driven: League, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Others are judged in processes of their own: this one has a screen to draw."""
     league = League(driven.folder, tmp_path / "judged")
-    before = standings_table(read_standings(league))
-    (first, *_) = (tmp_path / "judged").iterdir()
-    league_module._judge_once.cache_clear()
     with monkeypatch.context() as patched:
-        patched.setattr(league_module, "_judge", lambda *told: pytest.fail("judged again"))
+        patched.setattr(league_module, "_judge", lambda *told: pytest.fail("judged here"))
+        assert len(league.unjudged()) == 2
+        before = standings_table(read_standings(league))
+        assert league.unjudged() == []
+        league_module._judge_once.cache_clear()
         assert standings_table(read_standings(league)) == before
+    assert standings_table(read_standings(driven)) == before
+    (first, *_) = (tmp_path / "judged").iterdir()
     league_module._judge_once.cache_clear()
     first.write_text('{"judged": {"finishes": 3}}')
     assert standings_table(read_standings(league)) == before
 
 
-def test_two_who_read_at_once_judge_one_after_the_other_and_nothing_twice(
-    driven: League, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    league, judge = League(driven.folder, tmp_path / "judged"), league_module._judge
-    meeting = threading.Barrier(2)  # where both are within at once
-    judged: list[bytes] = []
-    met: list[int] = []
+def test_who_runs_a_match_has_judged_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = make_league(tmp_path, crashes=CRASHES, laser=LASER)
+    league = League(made.folder, tmp_path / "judged")
+    job = next(each for each in league.jobs() if each.entrants[0].name == "crashes")
+    league.run_job(job.key)
+    league_module._judge_once.cache_clear()
+    monkeypatch.setattr(league_module, "_judge", lambda *told: pytest.fail("judged again"))
+    assert league.unjudged() == []
+    assert league.judge(job) is not None
 
-    def meet(content: bytes, *told: Any) -> JudgedJob | None:
-        judged.append(content)
-        with suppress(threading.BrokenBarrierError):
-            met.append(meeting.wait(0.5))
-        return judge(content, *told)
 
-    monkeypatch.setattr(league_module, "_judge", meet)
-    with ThreadPoolExecutor(2) as readers:
-        first, second = readers.map(read_standings, [league, league])
-    assert standings_table(first) == standings_table(second)
-    assert (met, len(judged), len(set(judged))) == ([], 2, 2)
+def test_short_races_are_driven_first_and_what_is_left_is_told_by_their_length(tmp_path: Path) -> None:
+    league = League.make(tmp_path / "league", "Ours", ["racetrack", "parking"], [ARENA.id])
+    submit(league.folder, "laser", LASER)
+    jobs = league.jobs()
+    lengths = [each.expected_s for each in jobs]
+    assert lengths == sorted(lengths)
+    assert {each.level.id for each in jobs[:4]} == {"parking"}
+    assert len({each.entrants for each in jobs[:4]}) == 4, "so that all have met on one level"
+    done = [each.key for each in jobs[:4]]
+    assert seconds_left(jobs, [], 1.0) is None
+    assert seconds_left(jobs, done, 1.0) == pytest.approx(
+        (sum(lengths) - sum(lengths[:4])) / sum(lengths[:4])
+    )
+    assert seconds_left(jobs, [each.key for each in jobs], 1.0) == 0.0
 
 
 def test_a_film_that_nobody_waits_for_runs_nothing_more(
