@@ -88,6 +88,8 @@ class Dialogue:
     """Errors that an action may raise, and how they are said: ``Not saved: {}``."""
     has_entry: ClassVar[bool] = False
     """Whether texts are typed in it."""
+    has_scenes: ClassVar[bool] = False
+    """Whether ``scene_shown`` may give one."""
 
     # What is shown
 
@@ -115,9 +117,9 @@ class Dialogue:
         return ()
 
     @property
-    def scenes_shown(self) -> Sequence[object]:
-        """The scenes of a lesson of which a large screen shows pictures below what is asked, as many as there is room for."""
-        return ()
+    def scene_shown(self) -> object:
+        """The scene of a lesson of which a large screen shows a picture below what is asked; None: none belongs to it."""
+        return None
 
     def figure(self) -> Panel | None:
         """What such a screen shows there instead of the picture, where it has room; None: nothing."""

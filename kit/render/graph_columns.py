@@ -42,11 +42,25 @@ class ColumnLayout:
 
 
 def fit_columns(width: int, layout: GraphLayout) -> ColumnLayout:
-    """The columns for a picture of this width: what lanes need beyond the usual is taken from the names."""
+    """The columns for a picture of this width: what lanes need beyond the usual is taken from the names. These have a third each,
+    unless one is longer than that and another column has more than it needs.
+
+    >>> from kit.render.graph_layout import LayoutSide
+    >>> both = LayoutSide({"/flatland_server": 0}, {})
+    >>> fit_columns(72, GraphLayout({"/scan": 0}, both, both)).node_width
+    18
+    """
     needed = [max(side.lanes.values(), default=-1) + 1 for side in (layout.senders, layout.receivers)]
     left, right = (max(least, lanes) for least, lanes in zip(MIN_LANE_WIDTHS, needed, strict=True))
     names = max(3 * MIN_NAME_WIDTH, width - left - right - RATE_WIDTH - 2 * ARROW_WIDTH)
     nodes = names // 3
+    longest_node = _room_for(*layout.senders.rows, *layout.receivers.rows)
+    longest_item = _room_for(*layout.items)
+    spare = names - 2 * nodes - longest_item
+    if spare > 0:
+        nodes += max(0, min(longest_node - nodes, spare // 2))
+    else:
+        nodes -= max(0, min(nodes - longest_node, (1 - spare) // 2))
     pitches = tuple(
         2 if lanes and 2 * lanes <= room else 1 for lanes, room in zip(needed, (left, right), strict=True)
     )
@@ -58,3 +72,8 @@ def fit_columns(width: int, layout: GraphLayout) -> ColumnLayout:
         right + ARROW_WIDTH,
         (pitches[0], pitches[1]),
     )
+
+
+def _room_for(*names: str) -> int:
+    """Characters of a column in which all these names are whole, each with its mark and a blank."""
+    return max(map(len, names), default=0) + 2

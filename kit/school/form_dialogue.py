@@ -15,9 +15,7 @@ from kit.plain_text import counted, printable_line
 from kit.school.form_answers import InvalidAnswer, parse_answer
 from kit.school.form_session import PHASE_LABELS, FormSession
 from kit.school.lessons.glossary import glossary_action
-from kit.school.lessons.records import LessonScene
 from kit.school.progress import ProgressError
-from kit.school.quiz.items import QuizTopic
 from kit.school.survey import AnswerShape, AnswerValue, SurveyPhase, SurveyQuestion
 
 KEPT: Final = (
@@ -165,13 +163,6 @@ class FormDialogue(Dialogue):
         if value is not None or is_left_blank:
             shown.append(Text(shown_answer(value, question), Tone.GOOD, indent=6, is_tight=True))
         return tuple(shown)
-
-    @property
-    def scenes_shown(self) -> Sequence[LessonScene]:
-        """The world that stands for what is asked about."""
-        question = self.session.question
-        topics = [each for each in QuizTopic if question is not None and each == question.topic]
-        return ((topics or [QuizTopic.DRIVING])[0].scene,)
 
     def _answer_blocks(self, question: SurveyQuestion) -> list[Block]:
         match question.shape:

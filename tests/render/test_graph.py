@@ -151,9 +151,17 @@ def test_rates_are_short(rate: float, text: str) -> None:
     assert rate_text(rate) == text
 
 
+def test_a_name_is_whole_where_another_column_has_more_than_it_needs() -> None:
+    for node, topic in (("/a_node_with_a_name", "/t"), ("/n", "/a_topic_with_a_rather_long_name")):
+        shown = picture(talk(item(topic, node, node))).rows()[0]
+        assert shown.count(node) == 2
+        assert topic in shown
+
+
 def test_long_names_keep_what_tells_them_apart() -> None:
     shown = talk(
-        item("/some_robot/get_parameters()", "/a", "/b"), item("/some_robot/set_parameters()", "/a", "/b")
+        item("/some_robot_of_the_second_floor/get_parameters()", "/a", "/b"),
+        item("/some_robot_of_the_second_floor/set_parameters()", "/a", "/b"),
     )
     rows = picture(shown).rows()
     assert "get_parameters()" in rows[0]

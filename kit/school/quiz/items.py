@@ -19,7 +19,6 @@ from kit.school.lessons.reading import (
     lessons_folder,
     with_lesson_numbers,
 )
-from kit.school.lessons.records import LessonScene
 from kit.school.lessons.translation import translation_of
 from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
@@ -49,9 +48,9 @@ class QuizTopic(StrEnum):
         return _LABELS[self]
 
     @property
-    def scene(self) -> LessonScene:
-        """The world that stands for the topic, with nobody driving."""
-        return LessonScene(_PLACES[self], None, "", 1, 10.0)
+    def has_worlds(self) -> bool:
+        """Whether its questions are about robots in a world, so that a picture of one bears on them."""
+        return self in (QuizTopic.DRIVING, QuizTopic.FLATLAND, QuizTopic.FIELDS)
 
 
 _LABELS: Final[Mapping[QuizTopic, str]] = {
@@ -61,14 +60,6 @@ _LABELS: Final[Mapping[QuizTopic, str]] = {
     QuizTopic.LAYERS: "layers",
     QuizTopic.RL: "learning",
     QuizTopic.FIELDS: "potential fields",
-}
-_PLACES: Final[Mapping[QuizTopic, str]] = {
-    QuizTopic.DRIVING: "maze",
-    QuizTopic.ROS2: "simple",
-    QuizTopic.FLATLAND: "house",
-    QuizTopic.LAYERS: "crossing",
-    QuizTopic.RL: "turn",
-    QuizTopic.FIELDS: "pair_turn",
 }
 
 

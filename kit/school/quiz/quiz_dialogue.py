@@ -19,7 +19,7 @@ from kit.school.lessons.records import GraphScene, LearningScene, Lesson, Lesson
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.progress import ProgressError
 from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOutcome
-from kit.school.quiz.items import OPTION_COUNT, QuizItem, QuizTopic, lesson_reference
+from kit.school.quiz.items import OPTION_COUNT, QuizItem, lesson_reference
 from kit.school.quiz.quiz_scores import measure_calibration
 from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import (
@@ -81,6 +81,7 @@ class QuizDialogue(Dialogue):
     name = "quiz"
     help_title = "The quiz"
     help_notes = (MARKS, KEPT)
+    has_scenes = True
     failures = MappingProxyType({ProgressError: "Not saved: {}"})
 
     def __init__(self, session: QuizSession) -> None:
@@ -184,15 +185,14 @@ class QuizDialogue(Dialogue):
         return None if lesson is None else (lesson, lesson.steps[int(number or 1) - 1])
 
     @property
-    def scenes_shown(self) -> Sequence[LessonScene | LearningScene | GraphScene]:
-        """What moves in the lesson nearest to where the answer is taught; below nodes, which are low, and where nothing moves
-        there, the topic's world."""
-        topic = QuizTopic.DRIVING if self.item is None else self.item.topic
-        taught = None if self.item is None else self._taught_by(self.item)
-        near = None if taught is None else taught[0].scene_near(taught[1].number)
-        if near is None:
-            return (topic.scene,)
-        return (near, topic.scene) if isinstance(near, GraphScene) else (near,)
+    def scene_shown(self) -> LessonScene | LearningScene | GraphScene | None:
+        """What moves in the lesson nearest to where the answer is taught: tables and messages, and a world where the topic is
+        about worlds."""
+        taught = None if self.item is None or self.is_over else self._taught_by(self.item)
+        if self.item is None or taught is None:
+            return None
+        near = taught[0].scene_near(taught[1].number)
+        return None if isinstance(near, LessonScene) and not self.item.topic.has_worlds else near
 
     def figure(self) -> Panel | None:
         """Once the answer is told, the step that teaches it."""

@@ -106,8 +106,8 @@ class DialogueScreen(RowsScreen[None]):
         self._world: WorldView | None = None
         self._playback: PlaybackSceneView | None = None
         """The two that show scenes; None: the dialogue has none."""
-        self._shown_world: LessonScene | None = None
-        """The scene whose world is shown, or will be."""
+        self._shown_scene: object = None
+        """The one that is shown, or will be."""
         self._picture_rows = 0
         self._measured: object = None
         """For which question, on a screen of which size, the picture has so many rows."""
@@ -125,7 +125,7 @@ class DialogueScreen(RowsScreen[None]):
                     self._field = AnswerField()
                     yield self._field
                     yield TextRows(id="below")
-                if self.dialogue.scenes_shown:
+                if self.dialogue.has_scenes:
                     theme = cast("KitApp", self.app).kit_theme
                     self._world = WorldView(lambda: theme.encoder, theme.palette)
                     self._playback = PlaybackSceneView(theme)
@@ -173,7 +173,7 @@ class DialogueScreen(RowsScreen[None]):
         whole += figure
         picture = self._fitting_picture(room - len(whole))
         if picture:
-            self._show_scenes()
+            self._show_scene()
         self._lay_out(picture)
         self._show_field()
         body, self._top = window(whole, self._top, room - picture)
@@ -209,37 +209,29 @@ class DialogueScreen(RowsScreen[None]):
         self._placed = columns, picture, has_panels
         self.query_one("#question").styles.width = columns
         self._rows("panels").display = has_panels
-        self._lay_out_scenes(picture)
+        self._lay_out_scene(picture)
 
-    def _lay_out_scenes(self, rows: int) -> None:
-        """Gives the pictures their rows, the upper one as many as it has a use for."""
+    def _lay_out_scene(self, rows: int) -> None:
+        """Gives the picture its rows."""
         if self._world is None or self._playback is None:
             return
-        is_played, is_world = self._playback.scene is not None, self._shown_world is not None
-        upper = 0 if not is_played else min(rows, self._playback.rows or rows) if is_world else rows
-        lower = rows - upper if is_world and rows - upper >= LEAST_PICTURE else 0
-        for view, height in ((self._playback, upper), (self._world, lower)):
-            view.display = height > 0
-            view.styles.height = height
+        for view, is_shown in ((self._playback, self._playback.scene is not None), (self._world, True)):
+            view.display = is_shown and rows > 0
+            view.styles.height = min(rows, self._playback.rows or rows) if view is self._playback else rows
             view.styles.margin = (0, MARGIN, 0, self._left + MARGIN)
+            rows = 0 if is_shown else rows
 
-    def _show_scenes(self) -> None:
-        """Reads the scenes that belong to the question: what is played at once, a world in another thread."""
-        if self._world is None or self._playback is None:
+    def _show_scene(self) -> None:
+        """Reads the scene that belongs to the question: what is played at once, a world in another thread."""
+        scene = self.dialogue.scene_shown
+        if self._world is None or self._playback is None or scene == self._shown_scene:
             return
-        scenes = self.dialogue.scenes_shown
-        world = next((each for each in scenes if isinstance(each, LessonScene)), None)
-        played = next((each for each in scenes if isinstance(each, LearningScene | GraphScene)), None)
-        if played is not self._playback.scene:
-            self._placed = None
-            if played is None:
-                self._playback.close_session()
-            else:
-                self._playback.open(played, still=True)
-        if world != self._shown_world:
-            self._placed, self._shown_world = None, world
-            if world is not None:
-                self._read_world(self._world, world)
+        self._placed, self._shown_scene = None, scene
+        self._playback.close_session()
+        if isinstance(scene, LessonScene):
+            self._read_world(self._world, scene)
+        elif isinstance(scene, LearningScene | GraphScene):
+            self._playback.open(scene, still=True)
 
     @work(exclusive=True, group="scene")
     async def _read_world(self, picture: WorldView, scene: LessonScene) -> None:
@@ -267,7 +259,8 @@ class DialogueScreen(RowsScreen[None]):
         if place != self._measured:
             self._measured, self._picture_rows = place, min(MOST_PICTURE, left - ROWS_FOR_MORE)
         rows = min(self._picture_rows, left - 1)
-        return rows if self._world is not None and self._has_panels and rows >= LEAST_PICTURE else 0
+        has_picture = self._has_panels and self.dialogue.scene_shown is not None
+        return rows if has_picture and rows >= LEAST_PICTURE else 0
 
     @property
     def _has_panels(self) -> bool:

@@ -18,7 +18,7 @@ from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.widgets.text_field import AnswerField
 from tests.cases import every_case
-from tests.tui.lesson_stage import ROBOT, rows, stage, text, until
+from tests.tui.lesson_stage import rows, stage, text, until
 
 FORM = read_form()
 Act = Callable[[Pilot[None], FormSession], Awaitable[None]]
@@ -214,8 +214,6 @@ def test_every_question_fits_and_nothing_jumps_when_an_answer_is_chosen(
     size: tuple[int, int], tmp_path: Path
 ) -> None:
     async def act(pilot: Pilot[None], session: FormSession) -> None:
-        if size[0] > 120:
-            await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "the picture")
         while (question := session.question) is not None:
             if question.shape is AnswerShape.TEXT:
                 await pilot.press("escape")

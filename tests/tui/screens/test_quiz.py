@@ -15,8 +15,9 @@ from kit.school.quiz.quiz_dialogue import QuizDialogue, QuizStage
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
+from kit.tui.widgets.world_view import WorldView
 from tests.kit_content import kit_bank, kit_lesson
-from tests.tui.lesson_stage import rows, seen, stage
+from tests.tui.lesson_stage import ROBOT, rows, seen, stage, text, until
 
 BANK = kit_bank()
 Scene = Callable[[DialogueScreen, Pilot[None]], Awaitable[None]]
@@ -259,6 +260,22 @@ def test_a_large_screen_shows_the_lessons_scene_and_then_the_step_that_teaches_t
         await seen(pilot, step.title)
 
     play(scene, progress, lesson="20-q-learning", size=size)
+
+
+@pytest.mark.parametrize(("lesson", "has_world"), [("01-drive", True), ("02-nodes-and-topics", False)])
+def test_a_world_is_shown_only_beside_questions_about_worlds(
+    progress: ProgressJournal, lesson: str, has_world: bool
+) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        item = quiz(screen).item
+        assert item is not None
+        assert item.topic.has_worlds is has_world
+        world = screen.query_one(WorldView)
+        await until(pilot, lambda: world.display is has_world, "the world, or none")
+        if has_world:
+            await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "the robot")
+
+    play(scene, progress, lesson=lesson, size=(200, 50))
 
 
 def test_the_end_lists_what_was_answered_with_the_right_answers(progress: ProgressJournal) -> None:
