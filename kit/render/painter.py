@@ -15,7 +15,7 @@ from kit.render.raster import Grid
 from kit.render.role_looks import nearest_pen_role
 from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
 from kit.render.scene import Disc, Scene
-from kit.render.shading import FloorMap, lit_cells, seen_surfaces, shade_roles
+from kit.render.shading import FloorMap, facing, lit_cells, seen_surfaces, shade_roles
 from kit.render.sprites import SpriteLayer, size_in_rows
 
 FINE_DOTS = 1.5
@@ -45,6 +45,9 @@ class Painter:
         self._solid: BoolArray = np.empty((0, 0), dtype=bool)
         self._faces = NO_FACES
         """Characters of walls beside the floor."""
+        self._lasers: FloatArray = np.empty((0, 2))
+        self._faced = NO_FACES
+        """The characters in which lasers are, and the faces that they can see."""
         self._walls: FloatArray | None = None
         self._view: tuple[Camera, float] | None = None
         self._wall_grid = raster.empty_grid(0, 0)
@@ -65,9 +68,7 @@ class Painter:
             canvas.draw_lines(raster.polyline(stroke.points), nearest_pen_role(stroke.color))
         for number, trail in enumerate(scene.trails):
             canvas.draw_points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)])
-        canvas.draw_hits(
-            scene.hits, seen_surfaces(scene.beams), self._faces if scene.cells is None else NO_FACES
-        )
+        canvas.draw_hits(scene.hits, seen_surfaces(scene.beams), self._seen_faces(scene, camera))
         for target in scene.targets:
             canvas.draw_dots(self._ring(target, camera), Role.TARGET)
         for body in scene.bodies:
@@ -89,6 +90,18 @@ class Painter:
             shades[self._solid & (frame.fg == Role.TEXT)] = Role.FLOOR  # letters are to be read on a wall too
             np.copyto(frame.bg, shades, where=frame.bg == Role.EMPTY)
         return frame
+
+    def _seen_faces(self, scene: Scene, camera: Camera) -> BoolArray:
+        """The faces of walls that a laser of the scene can see; computed anew when one is in another character."""
+        if scene.cells is not None:
+            return NO_FACES
+        if not self._faces.size or not len(scene.beams):
+            return self._faces
+        first = np.append(True, (scene.beams[1:, :2] != scene.beams[:-1, :2]).any(axis=1))
+        lasers = np.floor(camera.project(scene.beams[first, :2]))
+        if not np.array_equal(lasers, self._lasers):
+            self._lasers, self._faced = lasers, self._faces & facing(self._wall_cells, lasers)
+        return self._faced
 
     def _ring(self, target: Disc, camera: Camera) -> raster.Dots:
         if target not in self._rings:
@@ -116,6 +129,7 @@ class Painter:
                 self._floor = self._floor_map.cells(camera, grid, across, down)
                 walled = grid.reshape(camera.rows, down, camera.columns, across) == Role.WALL
                 self._solid = walled.mean(axis=(1, 3)) >= 0.5
+                self._lasers = np.empty((0, 2))
                 self._faces = self._wall_cells & _beside(self._floor & ~self._wall_cells)
         return self._wall_grid
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -23,7 +24,10 @@ FLOOR_DOTS: Final = 512
 """Dots along the longer side of the grid on which the floor is found."""
 
 SAME_SURFACE: Final = 0.3
-"""Two neighbouring rays belong to one surface where their lengths differ by less than this share of the shorter."""
+"""Two neighbouring rays end on one surface where their ends are apart by less than this share of the shorter ray."""
+STRAIGHT_ON: Final = math.cos(math.radians(10.0))
+"""They also do where the line between their ends leads straight on from that of the rays beside them: on a wall that is seen
+from a flat angle, ends are far apart."""
 
 MAX_SOLID: Final = 0.1
 """An enclosed part that no robot can reach is solid, as the inside of a wall or a table is, if it takes no more than this
@@ -196,9 +200,12 @@ def _light_rays(lit: Uint8Array, rays: FloatArray, camera: Camera, hit: BoolArra
     widest = 2.5 * float(np.median(np.diff(angles)))
     if not widest > 0.0:
         return
+    points = lengths[:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
     if math.tau - (angles[-1] - angles[0]) < widest:  # all around
         angles = np.append(angles, angles[0] + math.tau)
         lengths = np.append(lengths, lengths[0])
+        points = np.concatenate((points, points[:1]))
+    joined = _on_one_surface(points, lengths)
     bounds, reach = camera.bounds, float(lengths.max())
     left, right = np.clip(
         (
@@ -228,9 +235,11 @@ def _light_rays(lit: Uint8Array, rays: FloatArray, camera: Camera, hit: BoolArra
     gap = angles[after] - angles[after - 1]
     one, other = lengths[after - 1], lengths[after]
     shorter = np.minimum(one, other)
-    share = np.divide(angle - angles[after - 1], gap, out=np.zeros_like(angle), where=gap > 0)
-    between = one + share * (other - one)
-    limit = np.where(np.abs(other - one) < SAME_SURFACE * shorter, between, shorter)
+    # As far as the straight line between the ends of both rays, where they are on one surface.
+    past = angle - angles[after - 1]
+    spread = one * np.sin(past) + other * np.sin(gap - past)
+    between = np.divide(one * other * np.sin(gap), spread, out=shorter.copy(), where=spread > 0)
+    limit = np.where(joined[after - 1], between, shorter)
     seen &= (gap <= widest) & (distance <= limit)
     if hit is not None:
         seen |= hit[top:bottom, left:right]
@@ -248,15 +257,51 @@ def seen_surfaces(beams: FloatArray) -> FloatArray:
     if len(beams) < 2:
         return beams[:0]
     lengths = np.hypot(beams[:, 2] - beams[:, 0], beams[:, 3] - beams[:, 1])
-    shorter = np.minimum(lengths[1:], lengths[:-1])
     lines = np.concatenate((beams[:-1, 2:], beams[1:, 2:]), axis=1)
-    apart = np.hypot(lines[:, 2] - lines[:, 0], lines[:, 3] - lines[:, 1])
-    joined = (beams[1:, :2] == beams[:-1, :2]).all(axis=1) & (apart < SAME_SURFACE * shorter)
+    joined = (beams[1:, :2] == beams[:-1, :2]).all(axis=1) & _on_one_surface(beams[:, 2:], lengths)
     surfaces: FloatArray = lines[joined]
     return surfaces
+
+
+def facing(walls: BoolArray, lasers: FloatArray) -> BoolArray:
+    """(rows, columns): which characters of ``walls`` have their free side towards one of the ``lasers`` (n, 2), whole
+    columns and rows: noise carries the end of a ray through a thin wall to the face that the laser does not see."""
+    rows, columns = walls.shape
+    free = np.pad(~walls, 1, constant_values=True)
+    seen = np.zeros_like(walls)
+    for column, row in lasers[np.isfinite(lasers).all(axis=1)]:
+        down, right = np.sign(row - np.arange(rows))[:, None], np.sign(column - np.arange(columns))
+        for drop, shift in product((-1, 0, 1), repeat=2):
+            if drop or shift:
+                beside = free[1 + drop : rows + 1 + drop, 1 + shift : columns + 1 + shift]
+                seen |= beside & (down == drop if drop else True) & (right == shift if shift else True)
+    return seen & walls
+
+
+def _on_one_surface(ends: FloatArray, lengths: FloatArray) -> BoolArray:
+    """(n - 1,): whether each ray and the next one end on one surface. ``ends`` (n, 2); ``lengths`` (n,)."""
+    steps = np.diff(ends, axis=0)
+    apart = np.hypot(steps[:, 0], steps[:, 1])
+    joined: BoolArray = apart < SAME_SURFACE * np.minimum(lengths[1:], lengths[:-1])
+    cosines = (steps[1:] * steps[:-1]).sum(axis=1)
+    straight = cosines > STRAIGHT_ON * apart[1:] * apart[:-1]
+    joined[1:] |= straight
+    joined[:-1] |= straight
+    return joined
 
 
 def shade_roles(floor: BoolArray, lit: Uint8Array) -> Uint8Array:
     """(rows, columns) background roles. ``lit``: as of ``lit_cells``."""
     roles: Uint8Array = np.where(floor, np.maximum(lit, np.uint8(Role.FLOOR)), np.uint8(Role.EMPTY))
+    # A single dark character among lit ones is noise of the laser, not a shadow.
+    bright = roles != Role.FLOOR
+    alone = ~bright
+    alone[1:] &= bright[:-1]
+    alone[:-1] &= bright[1:]
+    alone[:, 1:] &= bright[:, :-1]
+    alone[:, :-1] &= bright[:, 1:]
+    for row, column in np.argwhere(alone).tolist():
+        top, left = max(row - 1, 0), max(column - 1, 0)
+        beside = np.append(roles[top : row + 2, column], roles[row, left : column + 2])
+        roles[row, column] = max(beside.max(), Role.FLOOR)
     return roles

@@ -14,7 +14,7 @@ from kit.render.encode import BrailleEncoder
 from kit.render.painter import Painter
 from kit.render.roles import LIT_ROLES, Role
 from kit.render.scene import Scene, SceneBody, SceneBounds
-from kit.render.shading import lit_cells, seen_surfaces
+from kit.render.shading import facing, lit_cells, seen_surfaces, shade_roles
 from tests.render.scenes import box_walls
 
 ROOM = box_walls(((0.0, 0.0, 4.0, 4.0), (2.5, 2.5, 3.5, 3.5)))
@@ -142,3 +142,51 @@ def test_a_picture_without_robots_draws_walls_as_thick_as_they_are_for_the_robot
     for passage, is_solid in ((0.0, False), (0.3, True)):
         frame = Painter(BrailleEncoder()).paint(Scene(walls, passage=passage), CAMERA)
         assert (chr(frame.glyphs[wall]) == "█") is is_solid, passage
+
+
+def test_a_wall_seen_from_a_flat_angle_is_one_surface() -> None:
+    """Rays every 5 degrees along a wall at 0.3 m: the far ends are further apart than a third of a ray."""
+    angles = np.radians(np.arange(5.0, 90.0, 5.0))
+    ends = np.column_stack((0.3 / np.tan(angles), np.full_like(angles, 0.3)))
+    fan = np.column_stack((np.zeros_like(ends), ends))
+    assert len(seen_surfaces(fan)) == len(fan) - 1
+    noisy = fan.copy()
+    noisy[:, 2:] *= 1.0 + np.random.default_rng(0).normal(0.0, 0.01, (len(fan), 1))
+    assert len(seen_surfaces(noisy)) == len(fan) - 1
+    before_the_wall = 0.85 * np.array((0.3 / math.tan(math.radians(7.5)), 0.3))
+    camera = Camera.fit(SceneBounds(-1.0, -1.0, 5.0, 5.0), 120, 60)
+    column, row = camera.project(before_the_wall).tolist()
+    assert lit_cells(fan, camera)[math.floor(row), math.floor(column)]
+
+
+def test_a_surface_behind_an_edge_is_another_one() -> None:
+    """A wall that ends at x = 1, and one across behind it."""
+    angles = np.radians(np.arange(10.0, 80.0, 4.0))
+    ends = np.where(
+        (0.5 / np.tan(angles) < 1.0)[:, None],
+        np.column_stack((0.5 / np.tan(angles), np.full_like(angles, 0.5))),
+        np.column_stack((np.full_like(angles, 2.5), 2.5 * np.tan(angles))),
+    )
+    joined = seen_surfaces(np.column_stack((np.zeros_like(ends), ends)))
+    assert len(joined) == len(angles) - 2
+
+
+def test_one_dark_character_among_lit_ones_is_lit_and_a_shadow_is_not() -> None:
+    floor, lit = np.ones((6, 8), dtype=bool), np.full((6, 8), Role.LIT_FAR, dtype=np.uint8)
+    floor[:, 0] = False
+    lit[2, 1] = lit[4, 5] = lit[4, 6] = Role.EMPTY
+    roles = shade_roles(floor, lit)
+    assert roles[2, 1] == Role.LIT_FAR
+    assert (roles[4, 5:7] == Role.FLOOR).all()
+
+
+def test_of_a_thin_wall_the_face_towards_the_laser_lights_up() -> None:
+    walls = np.zeros((8, 10), dtype=bool)
+    walls[3:5, 2:8] = True
+    above = facing(walls, np.array([[9.0, 0.0]]))
+    assert above[3, 2:8].all()
+    assert not above[4, 2:6].any()
+    assert above[4, 7]  # its right end
+    both = facing(walls, np.array([[9.0, 0.0], [5.0, 7.0], [math.nan, 1.0]]))
+    assert both[3:5, 2:8].all()
+    assert not (both & ~walls).any()
