@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
+
+import numpy as np
 
 from kit.document.rows import MARGIN, Row, row
 from kit.plain_text import counted, wrap
+from kit.render.curve import Axes, Curve, draw_curves
+from kit.render.encode import Encoder
 from kit.school.game.daily import DAILY_PREFIX
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.tui.rows.chart_rows import CHART_ROWS, stretched_chart
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import NO_STAR, STAR
+from kit.tui.rows.ruled_title import ruled_title
 
-LEAST_LEAD: Final = 0.5
-"""Of a chart's scale [s]."""
-LEAST_SPEED_ROWS: Final = 4
-"""Of a chart of the speed with its title."""
-HIGHEST_LEAD: Final = 15
-"""Rows of a chart."""
+LEAST_CURVE_ROWS, HIGHEST_CURVE = 4, 22
+"""Rows of a curve with its title and its scale."""
+SCALE: Final = 7
+"""Columns of the scale before a curve."""
 RUN_OF_THE_DAY: Final = "this run counts; what follows is practice"
 REPLACES: Final = "it replaces a best that this kit drives differently"
 MARK: Final = 5
@@ -104,22 +107,36 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
     ]
 
 
-def lead_rows(leads: Sequence[float], width: int, room: int) -> list[Row]:
-    """A chart of how far ahead of the reference a drive was [s], from its beginning to its end, as high as ``room`` rows allow."""
-    if len(leads) < 2:
-        return []
-    rows = min(HIGHEST_LEAD, max(CHART_ROWS, room - 1))
-    title, note = "ahead of the reference", "s, down is behind"
-    return [row(" ", *each) for each in stretched_chart(title, note, leads, width - MARGIN, LEAST_LEAD, rows)]
+def lead_rows(leads: Sequence[float], seconds: float, width: int, room: int, encoder: Encoder) -> list[Row]:
+    """A curve of how far ahead of the reference a drive of ``seconds`` was, from its beginning to its end, in at most ``room``
+    rows; none for fewer than ``LEAST_CURVE_ROWS``."""
+    title = "ahead of the reference"
+    return _curve_rows(title, "s, down is behind", leads, seconds, width, room, Axes("s", goal=0.0), encoder)
 
 
-def speed_rows(speeds: Sequence[float], width: int, room: int) -> list[Row]:
-    """A chart of the speed of a drive [m/s], from its beginning to its end, as high as ``room`` rows allow; none for fewer than
-    ``LEAST_SPEED_ROWS``."""
-    if len(speeds) < 2 or room < LEAST_SPEED_ROWS:
+def speed_rows(speeds: Sequence[float], seconds: float, width: int, room: int, encoder: Encoder) -> list[Row]:
+    """The same of the speed."""
+    return _curve_rows("speed", "m/s", speeds, seconds, width, room, Axes("s", low=0.0), encoder)
+
+
+def _curve_rows(
+    title: str,
+    note: str,
+    values: Sequence[float],
+    seconds: float,
+    width: int,
+    room: int,
+    axes: Axes,
+    encoder: Encoder,
+) -> list[Row]:
+    """A curve over the time of a drive below its title."""
+    if len(values) < 2 or room < LEAST_CURVE_ROWS:
         return []
-    chart = stretched_chart("speed", "m/s", speeds, width - MARGIN, LEAST_LEAD, min(CHART_ROWS, room - 1))
-    return [row(" ", *each) for each in chart]
+    curve = Curve("", np.linspace(0.0, seconds, len(values)), np.array(values))
+    axes = replace(axes, end=seconds, margin=SCALE)
+    frame = draw_curves([curve], axes, width - MARGIN, min(room, HIGHEST_CURVE), encoder)
+    drawn = [row(" ", (each[:SCALE], "dim"), (each[SCALE:], "code")) for each in frame.rows()[1:-1]]
+    return [row(" ", *ruled_title(title, width - MARGIN, note)), *drawn, row(" ", (frame.rows()[-1], "dim"))]
 
 
 def needed_rows(bins: Sequence[HistogramBin], width: int, unit: str = "s", decimals: int = 2) -> list[Row]:

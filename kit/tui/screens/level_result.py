@@ -19,7 +19,7 @@ from textual.screen import ModalScreen
 
 from kit.arrays import FloatArray
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import MARGIN, Row, broken, row, row_text, row_width, side_by_side
+from kit.document.rows import MARGIN, Row, row, side_by_side
 from kit.render.role_looks import PEN_ROLES
 from kit.render.roles import Role
 from kit.render.scene import PenStroke, Scene, ScenePath
@@ -33,12 +33,24 @@ from kit.school.game.race import (
     DriverKind,
     RaceFinish,
 )
+from kit.school.game.references import reference_seconds
 from kit.school.game.starts import film_scenario
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.flourish import Flourish
 from kit.tui.input.drive_keys import drive_key
 from kit.tui.rows import drive_end_rows, level_rows
-from kit.tui.rows.chart_rows import CHART_ROWS
+from kit.tui.rows.drive_end_page import (
+    CHARTS,
+    LADDER_COLUMNS,
+    LEFT,
+    NARROW,
+    NEXT_ROWS,
+    WIDTH,
+    DriveEnd,
+    DriveEndPage,
+    MapPlace,
+    drive_end_page,
+)
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.rows.medal_rows import SMALL, drawn_columns, medal_drawing, medal_size
@@ -57,28 +69,9 @@ BELL_VARIABLE: Final = "KIT_BELL"
 """If set to 1, the terminal's bell rings for a new medal."""
 MOST_REVEALS: Final = 14
 """Of rows, in few enough steps that a long page is whole in a few seconds."""
-WIDTH: Final = 74
 FINISH_WIDTH: Final = 40
 FINISH_ROWS: Final = 3
 """Columns of the photo finish, and how many are in it."""
-FIXED_ROWS: Final = 2
-"""Of a result: who drove, and the empty row below how it ended."""
-ROWS_AROUND: Final = 2
-"""Of the result: a note and the keys."""
-NARROW: Final = 80
-"""Columns from which on a small map stands beside medal, times and sectors."""
-WIDE: Final = 110
-"""Columns from which on the map stands beside the result."""
-LEFT: Final = 46
-"""Columns of medal, times and sectors where a small map stands beside these alone."""
-LEAST_BESIDE_ROWS, MOST_BESIDE_ROWS = 9, 12
-"""Of that map."""
-LEAST_MAP_ROWS: Final = 7
-"""Of the map below the result; where there are fewer it is left out. It comes there if it is larger than beside the result."""
-LADDER_COLUMNS: Final = 46
-"""Columns of the ladder beside the next level."""
-NEXT_ROWS: Final = 7
-"""Of the next level's picture."""
 SPEED_INTERVAL: Final = 0.1
 """Between two speeds of a chart [s]."""
 JUMP_SPEED: Final = 10.0
@@ -119,11 +112,12 @@ class DriveResultScreen(ModalScreen[Wish]):
     DriveResultScreen {{ layout: vertical; layers: text map; }}
     DriveResultScreen > #text {{ width: 1fr; height: 1fr; }}
     DriveResultScreen > #keys {{ dock: bottom; height: 1; }}
-    DriveResultScreen > WorldView {{ display: none; }}
+    DriveResultScreen > WorldView, DriveResultScreen > #charts {{ display: none; }}
     DriveResultScreen.-beside > WorldView {{ display: block; layer: map; dock: right; width: {NARROW - LEFT}; }}
-    DriveResultScreen.-wide {{ layout: horizontal; }}
-    DriveResultScreen.-wide > #text {{ width: {WIDTH}; }}
-    DriveResultScreen.-wide > WorldView {{ display: block; width: 1fr; }}
+    DriveResultScreen.-wide, DriveResultScreen.-vast {{ layout: horizontal; }}
+    DriveResultScreen.-wide > #text, DriveResultScreen.-vast > #text {{ width: {WIDTH}; }}
+    DriveResultScreen.-wide > WorldView, DriveResultScreen.-vast > WorldView {{ display: block; width: 1fr; }}
+    DriveResultScreen.-vast > #charts {{ display: block; width: {CHARTS}; height: 1fr; padding: 0 1; }}
     DriveResultScreen.-high > #text {{ height: auto; }}
     DriveResultScreen.-high > WorldView {{ display: block; height: 1fr; }}
     """
@@ -134,43 +128,31 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._result = result
         self._workspace = workspace
         finish, record = result.finish, result.record
-        self._rungs, self._ladder = (
+        rungs, ladder = (
             ladder_of_drive(finish, record, result.driver, result.reference, is_tall=is_tall)
             for is_tall in (True, False)
         )
-        self._starts = level_rows.starts_rows(result.finishes, record.counts)
-        self._times = [
-            *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
-            *drive_end_rows.sector_rows(result.splits),
-        ]
-        self._photo_finish = photo_finish(result)
-        self._leads: list[float] = []
-        """How far ahead of the reference it was on its way [s], once that is known."""
-        self._speeds = speeds_of(result)
-        self._next_picture: list[str] = []
-        """The next level, once it is drawn."""
-        self._won = drive_end_rows.won_besides(result.level, record)
-        self._needed: list[Row] = []
-        """What all players needed, once that is known."""
+        self._told = DriveEnd(
+            result.level,
+            result.driver,
+            finish,
+            record,
+            ladder,
+            rungs,
+            level_rows.starts_rows(result.finishes, record.counts),
+            [
+                *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
+                *drive_end_rows.sector_rows(result.splits),
+            ],
+            photo_finish(result),
+            drive_end_rows.won_besides(result.level, record),
+            speeds_of(result),
+        )
+        self._page = DriveEndPage(MapPlace.NOWHERE, (), ())
         self._shown = 0
         self._note: Row = ()
         self._flourish = Flourish(theme, self._show_flourish)
         self._world = WorldView(lambda: theme.encoder, theme.palette)
-
-    @property
-    def _fixed(self) -> list[Row]:
-        """The rows above those that appear: who drove, how it ended, and what came of it, where there is room for that."""
-        result, width = self._result, min(WIDTH, self.app.size.width)
-        sentence = broken(row(f" {drive_end_rows.finish_sentence(result.finish)}"), width)
-        ending = drive_end_rows.ending(result.level, result.finish, width - MARGIN)
-        others = (sentence, self._above, self._earned, self._times, self._ladder, self._won, ending)
-        has_room = sum(map(len, others)) + FIXED_ROWS + ROWS_AROUND <= self.app.size.height
-        return [
-            row((f" {result.level.title}, {result.driver.phrase}", "bold")),
-            *sentence,
-            *(ending if has_room else []),
-            row(),
-        ]
 
     @property
     def _has_new_medal(self) -> bool:
@@ -181,10 +163,11 @@ class DriveResultScreen(ModalScreen[Wish]):
     def compose(self) -> ComposeResult:
         yield TextRows(id="text")
         yield self._world
+        yield TextRows(id="charts")
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
-        self._show()
+        self._arrange()
         if os.environ.get(BELL_VARIABLE) == "1" and self._has_new_medal:
             self.app.bell()
         self._timer = self.set_interval(REVEAL_INTERVAL, self._reveal)
@@ -194,25 +177,26 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     @work(exclusive=True, group="map")
     async def _draw_map(self) -> None:
-        result = self._result
+        result, told = self._result, self._told
         self._world.show(await to_thread(scene_of_drive, result))
         if result.record.following is not None and result.finish.reached:
-            glyphs = self._theme.terminal.glyphs.value
+            following, glyphs = result.record.following, self._theme.terminal.glyphs.value
             size = WIDTH - LADDER_COLUMNS - MARGIN, NEXT_ROWS
-            self._next_picture = await to_thread(picture_of, result.record.following, *size, glyphs)
-            self._show()
-        was_all_shown = self._shown >= len(self._revealed)
+            told.next_picture = await to_thread(picture_of, following, *size, glyphs)
+            told.next_reference = await to_thread(reference_seconds, following)
+            self._arrange()
+        was_all_shown = self._is_all_shown
         if result.finish.reached:
             seconds = await to_thread(seconds_needed, result.level, result.driver)
-            self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds), WIDTH)
-        self._leads = await to_thread(leads_over_reference, result)
+            told.needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds), WIDTH)
+        told.leads = await to_thread(leads_over_reference, result)
+        self._arrange()
         if was_all_shown:
-            self._shown = len(self._revealed)
+            self._shown = len(self._page.revealed)
         self._show()
 
     def _show_flourish(self) -> None:
-        if not self._flourish.number:
-            self._place_map()
+        self._place_map()
         self._show()
 
     def on_key(self, event: events.Key) -> None:
@@ -221,31 +205,34 @@ class DriveResultScreen(ModalScreen[Wish]):
             self._flourish.end()
             self._show_flourish()
 
+    @property
+    def _is_all_shown(self) -> bool:
+        return self._shown >= len(self._page.revealed)
+
     def _reveal(self) -> None:
-        self._shown += max(1, len(self._revealed) // MOST_REVEALS)
-        if self._shown >= len(self._revealed):
+        self._shown += max(1, len(self._page.revealed) // MOST_REVEALS)
+        if self._is_all_shown:
             self._timer.stop()
         self._show()
 
     def on_resize(self, event: events.Resize) -> None:
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Chooses rows and places anew: the size of the screen or what is known has changed."""
+        self._page = drive_end_page(self._told, *self.app.size, self._theme.encoder)
         self._place_map()
         self._show()
 
     def _place_map(self) -> None:
         """Places the map beside or below the text; a small one comes after the flourish, which has its place."""
-        width, height = self.app.size
-        self.set_class(width >= WIDE, "-wide")
-        self.set_class(False, "-high")
-        self.set_class(False, "-beside")
-        rows = len(self._fixed) + len(self._above) + len(self._revealed) + ROWS_AROUND
-        least = LEAST_MAP_ROWS if width < NARROW else MOST_BESIDE_ROWS + 1
-        is_high = width < WIDE and height >= rows + least
-        self.set_class(is_high, "-high")
-        self.set_class(NARROW <= width < WIDE and not is_high, "-beside")
-        is_beside = self.has_class("-beside")
-        self._world.visible = not (is_beside and self._flourish.number and not self._above)
-        self._world.styles.margin = (len(self._fixed) + len(self._above) if is_beside else 0, 0, 0, 0)
-        self._world.styles.height = len(self._beside_map) if is_beside else "1fr"
+        page = self._page
+        for place in MapPlace:
+            self.set_class(place is page.place, place.value)
+        is_small = page.place is MapPlace.BESIDE_TIMES
+        self._world.visible = not (is_small and self._flourish.number and not page.medal_rows)
+        self._world.styles.margin = (page.room_above if is_small else 0, 0, 0, 0)
+        self._world.styles.height = len(page.beside) if is_small else "1fr"
 
     @property
     def _medal(self) -> list[Row]:
@@ -255,129 +242,36 @@ class DriveResultScreen(ModalScreen[Wish]):
         )
 
     @property
-    def _above(self) -> list[Row]:
-        """The medal where a map stands beside the text: elsewhere the text stands beside the medal."""
-        return self._medal if self.has_class("-beside") else []
-
-    @property
-    def _earned(self) -> list[Row]:
-        column = drawn_columns(medal_size(self.app.size.height))
-        width = LEFT if self.has_class("-beside") else WIDTH - MARGIN - (column if self._medal else 0)
-        return drive_end_rows.earned(self._result.level, self._result.finish, self._result.record, width)
-
-    @property
-    def _is_won_beside(self) -> bool:
-        """Whether what was won besides has room beside a small map."""
-        count = len(self._earned) + len(self._times) + len(self._won)
-        has_room = count <= MOST_BESIDE_ROWS and all(row_width(each) <= LEFT for each in self._won)
-        return self.has_class("-beside") and has_room
-
-    @property
-    def _are_rungs_beside(self) -> bool:
-        """Whether the rungs have room beside a small map, each on a row."""
-        count = len(self._earned) + len(self._times) + len(self._won) * self._is_won_beside
-        has_room = count + len(self._rungs) <= MOST_BESIDE_ROWS
-        return has_room and all(row_width(each) <= LEFT for each in self._rungs)
-
-    @property
-    def _after_finish(self) -> list[Row]:
-        """What was won besides, where it stands below."""
-        return [] if self._is_won_beside else self._won
-
-    @property
-    def _beside_map(self) -> list[Row]:
-        """The rows that a small map stands beside."""
-        rows = [*self._earned, *self._times, *(self._won if self._is_won_beside else [])]
-        rows += self._rungs if self._are_rungs_beside else []
-        below = len(self._ladder_below) + len(self._after_finish)
-        room = self._room - below
-        if room - len(self._photo_finish) >= max(LEAST_BESIDE_ROWS, len(rows)):
-            room -= len(self._photo_finish)
-        blank = min(max(LEAST_BESIDE_ROWS, room), MOST_BESIDE_ROWS) - len(rows)
-        speed = drive_end_rows.speed_rows(self._speeds, LEFT, blank)
-        return [*rows, *speed, *[row()] * (blank - len(speed))]
-
-    @property
-    def _ladder_below(self) -> list[Row]:
-        """The ladder below a small map."""
-        return [*([] if self._are_rungs_beside else self._ladder), *self._starts]
-
-    @property
-    def _before_finish(self) -> list[Row]:
-        if self.has_class("-beside"):
-            return [*self._beside_map, *self._ladder_below]
-        size = medal_size(self.app.size.height)
-        if not size:
-            return [*self._earned, *self._ladder, *self._starts, *self._times]
-        rows = [*self._earned, *self._times]
-        rungs = side_by_side(self._rungs, self._next_rows, LADDER_COLUMNS)
-        return [*rows, *[row()] * (len(self._medal) - len(rows)), row(), *rungs, *self._starts]
-
-    @property
-    def _next_rows(self) -> list[Row]:
-        """The next level as a picture below its title; none after the last one, and where this one was not finished."""
-        following = self._result.record.following
-        if following is None or not self._result.finish.reached:
-            return []
-        picture = self._next_picture or [""] * NEXT_ROWS
-        return [row(("next level  ", "dim"), (following.title, "bold")), *map(row, picture)]
-
-    @property
-    def _revealed(self) -> list[Row]:
-        """The rows that appear one after the other; without the photo finish, and then what others needed, where they would
-        push others off the screen."""
-        before, finish, needed = self._before_finish, self._photo_finish, self._needed
-        rows = [*before, *finish, *self._after_finish, *needed]
-        if (room := self._room - len(rows)) >= 0:
-            if self.app.size.width < WIDE and not self.has_class("-beside"):
-                return rows  # the room is the map's
-            is_told = self.has_class("-beside") and any(
-                "speed" in row_text(each) for each in self._beside_map
-            )
-            speed = drive_end_rows.speed_rows(self._speeds, WIDTH - MARGIN, 0 if is_told else room)
-            lead = drive_end_rows.lead_rows(
-                self._leads, WIDTH - MARGIN, max(CHART_ROWS + 2, room - len(speed))
-            )
-            lead = lead if len(lead) <= room else []
-            speed = speed if len(speed) + len(lead) <= room else []
-            return [*rows, *speed, *lead]
-        rows = [*before, *self._after_finish, *needed]
-        return rows if len(rows) <= self._room else [*before, *self._after_finish]
-
-    @property
-    def _room(self) -> int:
-        """Rows for what appears."""
-        return self.app.size.height - len(self._fixed) - len(self._above) - ROWS_AROUND
-
-    @property
     def _unavailable(self) -> list[str]:
         return [
             *([] if self._result.finish.reached else ["next"]),
             *([] if self._result.program is not None else ["edit_file"]),
-            *(["replay"] if self._shown < len(self._revealed) else []),
+            *([] if self._is_all_shown else ["replay"]),
         ]
 
     def _show(self) -> None:
-        revealed, without = self._revealed, self._unavailable
+        page, without = self._page, self._unavailable
         keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
-        hidden = [row()] * max(0, len(revealed) - self._shown)  # what is below keeps its place
-        rows = [*revealed[: self._shown], *hidden]
-        size = medal_size(self.app.size.height)
-        if medal := self._medal if not self._above else []:
+        hidden = [row()] * max(0, len(page.revealed) - self._shown)  # what is below keeps its place
+        rows = [*page.revealed[: self._shown], *hidden]
+        size, medal = medal_size(self.app.size.height), self._medal
+        if medal and page.medal_rows:
+            rows = [*medal, *rows]
+        elif medal:
             rows = [*side_by_side(medal, rows[: len(medal)], drawn_columns(size)), *rows[len(medal) :]]
-        elif self._flourish.number and self.has_class("-beside") and not size:
+        elif self._flourish.number and page.place is MapPlace.BESIDE_TIMES and not size:
             drawn = medal_drawing(self._result.record.medal, SMALL, self._flourish.number)
             rows = [*side_by_side(rows[: len(drawn)], drawn, LEFT), *rows[len(drawn) :]]
-        rows = [*self._fixed, *self._above, *rows, self._note]
+        shown = {"text": [*page.fixed, *rows, self._note], "charts": page.charts, "keys": [keys]}
         for text in self.query(TextRows):  # none where the kit is left meanwhile
-            text.show([keys] if text.id == "keys" else rows)
+            text.show(shown[text.id or ""])
 
     # Keys
 
     def action_next(self) -> None:
         """First everything is shown, then the next level comes."""
-        if self._shown < len(self._revealed):
-            self._shown = len(self._revealed)
+        if not self._is_all_shown:
+            self._shown = len(self._page.revealed)
             self._timer.stop()
             self._show()
         elif self._result.finish.reached:
@@ -403,7 +297,7 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     def action_replay(self) -> None:
         """The film of this drive; not while its rows appear, when the key may still be held from driving."""
-        if self._shown < len(self._revealed):
+        if not self._is_all_shown:
             return
         result = self._result
         scenario = film_scenario(result.level, result.recording.seed)

@@ -33,7 +33,15 @@ from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui import flourish
 from kit.tui.app import KitApp
-from kit.tui.rows.drive_end_rows import LEAST_SPEED_ROWS
+from kit.tui.rows.drive_end_page import (
+    LADDER_COLUMNS,
+    LEAST_BESIDE_ROWS,
+    LEFT,
+    ROWS_AROUND,
+    VAST,
+    WIDE,
+)
+from kit.tui.rows.drive_end_rows import LEAST_CURVE_ROWS
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.screens import level_result
 from kit.tui.screens import levels as levels_module
@@ -41,11 +49,6 @@ from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import (
-    LADDER_COLUMNS,
-    LEAST_BESIDE_ROWS,
-    LEFT,
-    ROWS_AROUND,
-    WIDE,
     DriveResult,
     DriveResultScreen,
     gain_color,
@@ -585,18 +588,18 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
         await pilot.pause()
         await pilot.press("enter")
         await pilot.pause()
-        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._revealed))
-        shown_rows = len(dialog._revealed) + len(dialog._fixed) + len(dialog._above) + ROWS_AROUND
+        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._page.revealed))
+        shown_rows = dialog._page.room_above + len(dialog._page.revealed) + ROWS_AROUND
         assert shown_rows <= size[1]
-        assert dialog.has_class("-wide") is (size[0] >= WIDE)
+        assert dialog.has_class("-wide") is (WIDE <= size[0] < VAST)
         await wait_until_shown(pilot, lambda: dialog._world._scene is not None)
         assert dialog._world.size.height >= LEAST_BESIDE_ROWS
-        assert all(row_width(each) <= LEFT for each in dialog._beside_map) or size[0] >= WIDE
+        assert all(row_width(each) <= LEFT for each in dialog._page.beside) or size[0] >= WIDE
         shown = flat(screen.app)
         assert all(each.title in shown for each in record.unlocked)
         assert "yellow belt" in shown
         assert "Esc" in shown
-        assert (dialog._photo_finish[0] in dialog._revealed) is (size[1] > 24)
+        assert (dialog._told.photo_finish[0] in dialog._page.revealed) is (size[1] > 24)
         assert (level.ending.split()[-1] in shown) is (size[1] > 24)
 
     play(scene, progress, tmp_path / "desk", size)
@@ -636,11 +639,11 @@ def test_a_lost_drive_has_its_map_whole_once_all_is_shown(progress: ProgressJour
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         dialog = DriveResultScreen(screen._theme, lost, workspace)
         await screen.app.push_screen(dialog)
-        await wait_until_shown(pilot, lambda: bool(dialog._leads))
+        await wait_until_shown(pilot, lambda: bool(dialog._told.leads))
         await pilot.press("enter")
-        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._revealed))
+        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._page.revealed))
         await pilot.pause()
-        assert len(dialog._fixed) + len(dialog._revealed) + 1 <= dialog._world.region.y
+        assert dialog._page.room_above + len(dialog._page.revealed) + 1 <= dialog._world.region.y
         assert dialog._world.region.bottom <= 23
 
     play(scene, progress, tmp_path / "desk")
@@ -755,9 +758,9 @@ def test_rows_beside_a_small_map_show_the_speed_or_the_rungs_and_nothing_twice(
         dialog = DriveResultScreen(screen._theme, replace(result, record=plain), workspace)
         await screen.app.push_screen(dialog)
         await pilot.press("enter")
-        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._revealed))
-        blank = [each for each in dialog._beside_map if not row_text(each)]
-        assert len(blank) < LEAST_SPEED_ROWS
+        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._page.revealed))
+        blank = [each for each in dialog._page.beside if not row_text(each)]
+        assert len(blank) < LEAST_CURVE_ROWS
         assert flat(screen.app).count("m/s") <= 1
         assert flat(screen.app).count(" master ") == 1
 
@@ -806,9 +809,9 @@ def test_the_end_of_a_drive_shows_all_rungs_and_the_next_level(
         dialog = DriveResultScreen(screen._theme, result, workspace)
         await screen.app.push_screen(dialog)
         await pilot.press("enter")
-        await wait_until_shown(pilot, lambda: bool(dialog._next_picture and dialog._leads))
-        assert ("ahead of" in flat(screen.app)) is (size[1] == 50)
+        await wait_until_shown(pilot, lambda: bool(dialog._told.next_picture and dialog._told.leads))
         shown = flat(screen.app)
+        assert "ahead of" in shown
         assert following.title in shown
         order = [shown.index(f" {each} ") for each in ("record", "master", "you", "silver", "bronze")]
         assert order == sorted(order), "the time stands among the rungs"
@@ -816,7 +819,8 @@ def test_the_end_of_a_drive_shows_all_rungs_and_the_next_level(
             replace(result.finish, seconds=1.0), result.record, DriverKind.KEYS, 99.0, is_tall=True
         )
         assert max(map(row_width, slow)) < LADDER_COLUMNS, "nothing of it is cut"
-        assert "m/s" in shown
+        assert ("m/s" in shown) is (size[1] == 50)
+        assert (following.hint[:20] in shown) is (size[1] == 50), "what the next level is about"
 
     play(scene, progress, tmp_path / "desk", size)
 
