@@ -61,7 +61,8 @@ from kit.workspace import Workspace
 if TYPE_CHECKING:
     from kit.learning.policies.policy import Policy
 
-ABOUT_ROWS: Final = 7
+ABOUT_ROWS: Final = 8
+"""What is said of a level, and an empty row above the keys."""
 ABOUT_COLUMN: Final = 92
 """The column from which on a level's card stands beside what is said of it, where there is room."""
 MAP_WIDTH: Final = 84
@@ -92,8 +93,8 @@ ROOM_FOR_WORDS: Final = 100
 """Columns from which on the line of keys has its usual words."""
 SHORT_WORDS: Final = {"leaderboard": "board", "two_players": "players"}
 """Words of keys where there are fewer, by action."""
-ROWS_ABOVE_LEVELS: Final = 5
-"""Of the list: an empty one, the world's two, another empty one, the columns' names."""
+ROWS_ABOVE_LEVELS: Final = 4
+"""Of the list: the world's two, one of news or an empty one, the columns' names."""
 ROWS_AROUND: Final = 2
 """Of the screen: the heading and the line of keys."""
 
@@ -274,7 +275,7 @@ class LevelsScreen(RowsScreen[None]):
     @property
     def _rows_of_about(self) -> int:
         is_challenge = self.chosen_challenge is not None
-        return challenge_rows.most_rows_about(self.size.width) if is_challenge else ABOUT_ROWS
+        return challenge_rows.most_rows_about(self.size.width) + 1 if is_challenge else ABOUT_ROWS
 
     @property
     def _middle_rows(self) -> int:
@@ -286,7 +287,7 @@ class LevelsScreen(RowsScreen[None]):
         number = self._worlds.index(self._world) + 1
         heading = level_rows.world_heading(self._world, number, len(self._worlds), belt_of(best))
         width = self._rows("map").size.width
-        return [fitted(each, width) for each in (row((f" {self._news}", "good")), *heading, row())]
+        return [fitted(each, width) for each in (*heading, row((f" {self._news}", "good")))]
 
     def _level_rows(self) -> tuple[list[Row], list[Row]]:
         """The list of the chosen world with its map, and what is said of the chosen level."""

@@ -61,6 +61,7 @@ from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from tests.kit_content import kit_levels
 from tests.school.game.measured_drivers import keys_drive
+from tests.tui.lesson_stage import rows
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
@@ -786,6 +787,19 @@ def test_on_80_columns_no_key_of_the_levels_is_missing_and_the_stars_are_seen(
         )
         screen._refresh_after_drive(LEVELS[0])
         await wait_until_shown(pilot, lambda: "w replay" in flat(pilot.app))
+
+    play(scene, progress, tmp_path / "desk")
+
+
+@pytest.mark.parametrize("key", ["", "left"], ids=["a level", "a challenge"])
+def test_an_empty_row_is_above_the_keys(progress: ProgressJournal, tmp_path: Path, key: str) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: "> First drive" in flat(pilot.app))
+        await pilot.press(*([key] if key else []))
+        await wait_until_shown(pilot, lambda: not key or "A free lunch" in flat(pilot.app))
+        *_, last, keys = rows(pilot)
+        assert not last
+        assert "Esc" in keys
 
     play(scene, progress, tmp_path / "desk")
 
