@@ -280,13 +280,19 @@ def verify(context: click.Context) -> None:
 
     with _open_league(context) as (league, _):
         found = differing_jobs(league)
-        for job in found.differing:
-            names = " against ".join(each.name for each in job.entrants)
-            click.echo(
-                f"{job.level.title}, {names}: the programs drive something other than the result shows."
-            )
-        click.echo(f"{found.compared} compared, {len(found.differing)} different.")
-        if found.differing:
+        verdicts = {
+            "the programs drive something other than the result shows.": found.differing,
+            "driven something else each time, as with random numbers that have no seed: nothing can be compared.": (
+                found.unrepeatable
+            ),
+        }
+        for verdict, jobs in verdicts.items():
+            for job in jobs:
+                names = " against ".join(each.name for each in job.entrants)
+                messages.say(f"{job.level.title}, {names}: {verdict}")
+        different = len(found.differing) + len(found.unrepeatable)
+        messages.say(f"{found.compared} compared, {different} different.")
+        if different:
             raise SystemExit(INCOMPLETE)
 
 

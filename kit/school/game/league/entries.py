@@ -2,7 +2,8 @@
 
 An agent enters as the ROS 2 node that it would be on a robot, so a match runs programs alone, and is known by that program, not by
 what anybody says of it. A file belongs to who has put it there; in a class's folder nobody can replace or remove another's. Whose
-name is whose, the league's owner records with each run, so that who renews an entry keeps its name.
+name and program is whose, the league's owner records with each run, so that who renews an entry keeps its name, and a clock that
+was set back decides nothing.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
@@ -38,7 +40,7 @@ MAX_LISTED_OF_ONE_USER: Final = 2 * MAX_OF_ONE_USER
 """Files of one user in another's league that are looked at, those that take no part included."""
 MANIFEST: Final = "league.json"
 HOLDERS: Final = "holders.json"
-"""Users by the names that they hold, as the league's owner has recorded them."""
+"""The user and the code of each name, as the league's owner has recorded them at the last run."""
 MAX_HOLDERS_BYTES: Final = 1 << 20
 NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
@@ -83,8 +85,8 @@ class Entry:
 def read_entries(folder: Path) -> tuple[Entry, ...]:
     """All entries of a league, by name. What is no entry's file is passed over. Raises LeagueError.
 
-    Of two entries of one name or program, that of the name's recorded holder takes part, or else the one that has been there for
-    longer: whoever copies another's file into the folder, under whatever name, keeps nobody out, also when that is renewed.
+    Of two entries of one name or program, that takes part which the last run has recorded so, then that of the name's recorded
+    holder, then the one that has been there for longer: whoever copies another's file into the folder, under whatever name, keeps nobody out, also when that is renewed.
     """
     holders, owner = _read_holders(folder), _owner_of(folder / MANIFEST)
     try:
@@ -141,20 +143,22 @@ def _identity(program: bytes) -> tuple[DriverKind, Path, str, str]:
 
 def record_holders(folder: Path) -> None:
     """Records who holds which name: to be called by the league's owner before matches are driven. Raises LeagueError and OSError."""
-    holders = {each.name.casefold(): each.user for each in read_entries(folder) if not each.problem}
+    holders = {
+        each.name.casefold(): [each.user, each.code] for each in read_entries(folder) if not each.problem
+    }
     write_atomically(folder / HOLDERS, (json.dumps(holders, indent=1, sort_keys=True) + "\n").encode())
 
 
-def _read_holders(folder: Path) -> dict[str, int]:
+def _read_holders(folder: Path) -> dict[str, tuple[int, str]]:
     """Returns what ``record_holders`` has written; nothing for a file that is not the league's owner's, or holds something else."""
     try:
         with open_plain_file(folder / HOLDERS, follows_links=False) as opened:
             if os.fstat(opened.fileno()).st_uid != _owner_of(folder / MANIFEST):
                 return {}
             found = json.loads(opened.read(MAX_HOLDERS_BYTES))
-    except (OSError, ValueError, RecursionError):
+            return {name: (int(user), str(code)) for name, (user, code) in found.items()}
+    except (OSError, ValueError, TypeError, AttributeError, RecursionError):
         return {}
-    return found if isinstance(found, dict) else {}
 
 
 def _owner_of(file: Path) -> int:
@@ -165,15 +169,19 @@ def _owner_of(file: Path) -> int:
         return -1
 
 
-def _rank(file: Path, holders: Mapping[str, int]) -> tuple[bool, int, str]:
-    """Returns by what entries are ordered: those of a name's holder first, then by when a file was put there, by the system's
-    clock, which its owner cannot set back as he can ``st_mtime`` [ns]."""
+def _rank(file: Path, holders: Mapping[str, tuple[int, str]]) -> tuple[bool, bool, int, str]:
+    """Returns by what entries are ordered: those first that are still what was recorded, then those of a name's holder, then by
+    when a file was put there, by the system's clock, which its owner cannot set back as he can ``st_mtime`` [ns]."""
     try:
         status = file.lstat()
     except FileNotFoundError:  # withdrawn meanwhile
-        return True, 0, file.name
-    is_holder = holders.get(file.stem.casefold()) == status.st_uid
-    return not is_holder, status.st_ctime_ns, file.name
+        return True, True, 0, file.name
+    user, code = holders.get(file.stem.casefold(), (-1, ""))
+    is_holder, is_same = user == status.st_uid, False
+    if is_holder:
+        with suppress(OSError), open_plain_file(file, follows_links=False) as opened:
+            is_same = _driver_and_code(opened.read(max(MAX_BYTES.values()) + 1))[1] == code
+    return not is_same, not is_holder, status.st_ctime_ns, file.name
 
 
 def submit(folder: Path, name: str, program: bytes) -> Path:

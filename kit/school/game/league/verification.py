@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from kit.run.recording import Recording
 from kit.school.game.league.league import League, LeagueJob, run_league_job
 from kit.school.game.shared_drives import digest_of
 
@@ -14,19 +16,29 @@ class Verification:
 
     compared: int
     differing: tuple[LeagueJob, ...]
+    """Those whose programs drive something other than the result shows."""
+    unrepeatable: tuple[LeagueJob, ...]
+    """Those whose programs drive something else each time."""
 
 
 def differing_jobs(league: League) -> Verification:
-    """Drives every job that has a result again. A result of another platform is passed over: there a drive is the same, but not
+    """Drives every job that has a result again, and those that differ once more. A result of another platform is passed over: there a drive is the same, but not
     to the bit. Raises LeagueError."""
     confinement = league.programme().confinement
-    compared, differing = 0, []
+    compared = 0
+    differing: list[LeagueJob] = []
+    unrepeatable: list[LeagueJob] = []
     for job in league.jobs():
         judged = league.judge(job)
         if judged is None or not judged.is_same_platform:
             continue
         compared += 1
-        recordings, _ = run_league_job(job, confinement)
-        if list(map(digest_of, recordings)) != list(map(digest_of, league.recordings(job))):
-            differing.append(job)
-    return Verification(compared, tuple(differing))
+        driven = _digests(run_league_job(job, confinement)[0])
+        if driven != _digests(league.recordings(job)):
+            is_same_again = driven == _digests(run_league_job(job, confinement)[0])
+            (differing if is_same_again else unrepeatable).append(job)
+    return Verification(compared, tuple(differing), tuple(unrepeatable))
+
+
+def _digests(recordings: Sequence[Recording]) -> list[str]:
+    return list(map(digest_of, recordings))

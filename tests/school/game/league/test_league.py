@@ -609,7 +609,7 @@ def test_who_renews_an_entry_keeps_its_name(tmp_path: Path) -> None:
     submit(league.folder, "ada", LASER + b"better = True\n")
     (ada,) = (each for each in league.entrants() if each.name.casefold() == "ada")
     assert (ada.user, ada.file.name) == (os.getuid(), "ada.py")
-    for forged in (b"[" * 9000, b'{"ada": "x"}', b'{"ada": %d}' % ANOTHER):
+    for forged in (b"[" * 9000, b'{"ada": "x"}', b'{"ada": [%d, ""]}' % ANOTHER):
         (league.folder / HOLDERS).write_bytes(forged)
         assert len(league.entrants()) == 2
     assert ANOTHER in {each.user for each in league.entrants()}, "what the owner records is read"
@@ -618,6 +618,17 @@ def test_who_renews_an_entry_keeps_its_name(tmp_path: Path) -> None:
     time.sleep(CLOCK_STEP_S)
     os.utime(league.folder / "entries" / name)
     assert ANOTHER not in {each.user for each in league.entrants()}, "what others record is not"
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
+def test_a_clock_that_is_set_back_gives_nobody_anothers_program(tmp_path: Path) -> None:
+    league = make_league(tmp_path, ada=LASER)
+    enter_as(ANOTHER, league, "bob.py", GIVES_UP)
+    record_holders(league.folder)
+    enter_as(ANOTHER, league, "bob.py", LASER)
+    time.sleep(CLOCK_STEP_S)
+    os.utime(league.folder / "entries" / "ada.py")  # is now later than the copy of it, as by a clock set back
+    assert [each.name for each in league.entrants()] == ["ada"]
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
@@ -767,6 +778,20 @@ def test_a_result_of_another_program_is_found_by_driving_anew(driven: League) ->
     good, bad = (drive_job(LEVEL, each) for each in league.entrants())
     shutil.copy(league.result_file(good.key), league.result_file(bad.key))  # the owner himself, for a friend
     assert [each.key for each in differing_jobs(league).differing] == [bad.key]
+
+
+@pytest.mark.long
+def test_a_program_that_drives_something_else_each_time_is_told_as_such(tmp_path: Path) -> None:
+    body = """
+    def begin(self):
+        import random
+        self.go(0.05 + 0.01 * random.Random().random())
+"""
+    league = make_league(tmp_path, laser=LASER, draws=FRAME.format(body=body).encode())
+    job = next(each for each in league.jobs() if each.entrants[0].name == "draws")
+    league.run_job(job.key)
+    found = differing_jobs(league)
+    assert ([each.key for each in found.unrepeatable], found.differing) == ([job.key], ())
 
 
 # Cheats: programs at tag
