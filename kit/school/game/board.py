@@ -20,8 +20,8 @@ State = TypeVar("State")
 
 WALL: Final = "#"
 GOAL: Final = "G"
-FULL: Final = "█"
-"""Fills a cell."""
+FULL, LIT = "█", "░"
+"""Fill a cell: a wall, and what is seen."""
 MOVES: Final = {"l": (0, -1), "r": (0, 1), "u": (-1, 0), "d": (1, 0)}
 """The letter of each move, with its change of row and column."""
 ARROWS: Final = {"l": "←", "r": "→", "u": "↑", "d": "↓"}
@@ -37,6 +37,8 @@ class Board(ABC):
 
     keys: ClassVar[str]
     """What the keys do, in one sentence."""
+    signs: ClassVar[str] = ""
+    """What the signs on it mean, in one sentence; empty where the task says it."""
     mark_word: ClassVar[str] = "mark"
     """What the space bar does, in one word."""
 
@@ -168,7 +170,7 @@ def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1)
 
     def shown(row: int, column: int, part: int) -> tuple[str, str]:
         sign, style = signs.get((row, column)) or _plain_square(grid[row][column])
-        if sign == FULL:
+        if sign in (FULL, LIT):
             return sign * 2 * thick[column], style
         return (sign if part == scale // 2 else " ").center(2 * scale - 1) + " ", style
 

@@ -208,56 +208,59 @@ class PuzzleCheck:
     """Why it could not be judged or kept; empty where it was."""
 
 
-def puzzle_page(
-    challenge: Challenge,
-    board: Board,
-    judgement: Judgement | str,
-    width: int,
-    height: int,
-    glyphs: GlyphStyle,
-    check: PuzzleCheck | None = None,
-    beside: Sequence[Sequence[Row]] = (),
-    last: Sequence[Row] = (),
-) -> list[Row]:
-    """A puzzle below each other: what it asks for, its board, what the answer is worth. ``judgement``: or why there is none.
-    ``beside``, ``last``: parts that stand beside the board before and after the first of its details, those that fit there. A
-    check changes no row's place. Where there are too few rows, the story gives way first, then the sentence about the worth, then
-    the task."""
-    story, task, keys = _about_puzzle(challenge, board, width)
-    worth, sentence = worth_now(judgement, width, check)
-    around = sum(map(len, (story, task, keys, worth, sentence)))
-    scale, _ = largest_drawing(board, width, height - around - 1)
+@dataclass(frozen=True, slots=True)
+class PuzzleView:
+    """What is shown of a puzzle that is being solved."""
+
+    challenge: Challenge
+    board: Board
+    judgement: Judgement | str
+    """Of the answer on the board, or why there is none."""
+    glyphs: GlyphStyle
+    check: PuzzleCheck | None = None
+    beside: Sequence[Sequence[Row]] = ()
+    """Parts that stand beside the board, before the first of its details, where they fit."""
+    last: Sequence[Row] = ()
+    """One that stands after it."""
+
+    def details(self, width: int) -> list[Sequence[Row]]:
+        """All that may stand beside the board, in this order."""
+        details = self.board.details(width)
+        return [*self.beside, *details[:1], self.last, *details[1:]]
+
+
+def puzzle_page(view: PuzzleView, width: int, height: int) -> list[Row]:
+    """A puzzle below each other: what it asks for, its board, what the answer is worth. A check changes no row's place. Where there
+    are too few rows, the keys give way first, which stand at the foot too, then the empty row above the board, the story, the
+    sentence about the worth and the task."""
+    board = view.board
+    story, task, keys, signs = _about_puzzle(view, width)
+    worth, sentence = worth_now(view.judgement, width, view.check)
+    around = sum(map(len, (story, task, keys, signs, worth, sentence)))
     room = height - around - 1
-    middle = [row(), *_with_drawing(board, board.rows(scale), width, room, glyphs, beside, last)]
-    left_out = 0
-    while True:
+    scale, _ = largest_drawing(board, width, room)
+    middle = _with_drawing(view, board.rows(scale), width, room)
+    for left_out in range(6):
         parts = [
-            *([] if left_out > 0 else story),
-            *([] if left_out > 2 else task),
-            *([] if left_out > 3 else keys),
-            *(middle[1:] if left_out > 4 else middle),
+            *(story if left_out < 3 else ()),
+            *(task if left_out < 5 else ()),
+            *(keys if left_out < 1 else ()),
+            *(signs if left_out < 5 else ()),
+            *([row()] if left_out < 2 else ()),
+            *middle,
             *worth,
-            *([] if left_out > 1 else sentence),
+            *(sentence if left_out < 4 else ()),
         ]
-        if len(parts) <= height or left_out > 4:
-            return parts
-        left_out += 1
+        if len(parts) <= height:
+            break
+    return parts
 
 
-def puzzle_beside(
-    challenge: Challenge,
-    board: Board,
-    judgement: Judgement | str,
-    width: int,
-    height: int,
-    glyphs: GlyphStyle,
-    check: PuzzleCheck | None = None,
-    beside: Sequence[Sequence[Row]] = (),
-    last: Sequence[Row] = (),
-) -> list[Row]:
+def puzzle_beside(view: PuzzleView, width: int, height: int) -> list[Row]:
     """A puzzle with its picture at the left and the curve of its moves below, and beside it what it asks for, what the answer is
     worth and what helps to solve it, in two columns where there is room. The picture is the board, or a drawing of it, which then
-    stands among the rest. ``beside``, ``last``: more parts, before and after the first of the board's details, those that fit."""
+    stands among the rest."""
+    board, glyphs = view.board, view.glyphs
     if drawing := board.drawing(int(width * DRAWING_SHARE), height - 1, glyphs):
         column, left = max(map(row_width, drawing)) + GAP, drawing
     else:
@@ -268,16 +271,16 @@ def puzzle_beside(
     rest = width - column - 1
     count = 2 if rest >= 2 * TWO_TEXTS else 1
     room = min(rest // count - GAP * (count - 1), WIDEST_TEXT)
-    story, task, keys = _about_puzzle(challenge, board, room)
-    worth, sentence = worth_now(judgement, room, check)
-    text = [row(), *story, row(), *task, row(), *keys, row(), *worth]
+    story, task, keys, signs = _about_puzzle(view, room)
+    worth, sentence = worth_now(view.judgement, room, view.check)
+    text = [row(), *story, row(), *task, row(), *keys, *signs, row(), *worth]
     text += sentence if len(text) + len(sentence) <= height else ()
     details = board.details(room)
     table: list[Row] = []
     if drawing:
         cells, told = _table_and_rest(board.rows())
         table = [*cells, *(each for shown in told for each in _wrap_row(shown, room))]
-    below = (table, *beside, last) if count > 1 else (table, *beside, *details[:1], last, *details[1:])
+    below = (table, *view.beside, view.last) if count > 1 else (table, *view.details(room))
     text += _stacked(below, room, height - len(text))
     shown = side_by_side([row(), *left], text, column)
     return shown if count == 1 else side_by_side(shown, _stacked(details, room, height), column + room + GAP)
@@ -319,23 +322,13 @@ def tries_rows(events: Sequence[ProgressEvent], width: int) -> list[Row]:
     return rows
 
 
-def _with_drawing(
-    board: Board,
-    rows: Sequence[Row],
-    width: int,
-    height: int,
-    glyphs: GlyphStyle,
-    beside: Sequence[Sequence[Row]],
-    last: Sequence[Row],
-) -> list[Row]:
+def _with_drawing(view: PuzzleView, rows: Sequence[Row], width: int, height: int) -> list[Row]:
     """A board with the drawing of it, if it has one, else with what fits there, beside its table."""
     table, rest = _table_and_rest(rows)
     column = max(map(row_width, table), default=0) + GAP
-    right = board.drawing(width - column, max(len(table), height - len(rest)), glyphs)
+    right = view.board.drawing(width - column, max(len(table), height - len(rest)), view.glyphs)
     if not right:
-        details = board.details(width - column)
-        parts = (*beside, *details[:1], last, *details[1:])
-        right = _stacked(parts, width - column, len(table) + 1)[1:]
+        right = _stacked(view.details(width - column), width - column, len(table) + 1)[1:]
     return [*(side_by_side(table, right, column) if right else table), *rest]
 
 
@@ -365,12 +358,14 @@ def _wrap_row(shown: Row, width: int) -> list[Row]:
     return [row((line, shown[-1][1])) for line in wrap(text.strip(), width, indent, indent)]
 
 
-def _about_puzzle(challenge: Challenge, board: Board, width: int) -> tuple[list[Row], list[Row], list[Row]]:
-    """The story, the task and the keys of a puzzle."""
+def _about_puzzle(view: PuzzleView, width: int) -> tuple[list[Row], list[Row], list[Row], list[Row]]:
+    """The story, the task, the keys and the signs of a puzzle."""
+    signs = view.board.signs
     return (
-        _wrap_with_lead("", challenge.story, width),
-        _wrap_with_lead("task  ", challenge.task_text, width, "dim"),
-        _wrap_with_lead("keys  ", board.keys, width, "dim"),
+        _wrap_with_lead("", view.challenge.story, width),
+        _wrap_with_lead("task  ", view.challenge.task_text, width, "dim"),
+        _wrap_with_lead("keys  ", view.board.keys, width, "dim"),
+        _wrap_with_lead("signs ", signs, width, "dim") if signs else [],
     )
 
 

@@ -18,6 +18,7 @@ from kit.school.progress import ProgressEvent, ProgressJournal
 from kit.tui.rows.challenge_rows import (
     LEAST_TEXT,
     PuzzleCheck,
+    PuzzleView,
     answers_needed_rows,
     puzzle_beside,
     puzzle_page,
@@ -100,17 +101,16 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             needed = answers_needed_rows(self._bins, judgement.comparison, LEAST_TEXT)
         tries = tries_rows(self._tries, LEAST_TEXT if is_wide else TRIES)
         place = puzzle_beside if is_wide else puzzle_page
-        return place(
+        view = PuzzleView(
             self._challenge,
             self._board,
             judgement,
-            width,
-            self.size.height - ROWS_AROUND,
             self._theme.graph_glyphs,
             self._checked,
             (needed, self._drawing),
             tries,
         )
+        return place(view, width, self.size.height - ROWS_AROUND)
 
     @property
     def _drawing(self) -> list[Row]:
@@ -208,5 +208,5 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
     def action_help(self) -> None:
         """What the keys of the board do is told as on the page."""
         without = [*self._unavailable_actions(), *BOARD_KEYS]
-        note = ("board", self._board.keys)
+        note = ("board", f"{self._board.keys} {self._board.signs}".strip())
         self.app.push_screen(HelpDialog("A puzzle", self.screen_actions, (note,), without=without))

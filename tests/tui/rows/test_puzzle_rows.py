@@ -8,7 +8,9 @@ from dataclasses import replace
 import pytest
 
 from kit.document.rows import row_text, row_width
+from kit.school.game.board import LIT
 from kit.school.game.challenge import AnswerError, Challenge, judge_return
+from kit.school.game.challenge_kinds.devices import DevicesTask
 from kit.school.game.challenge_kinds.exploit import ExploitTask
 from kit.school.game.challenge_kinds.layers import LayersTask
 from kit.school.game.challenges import BEGUN, all_challenges
@@ -20,6 +22,7 @@ from kit.tui.rows.challenge_rows import (
     LARGEST_SCALE,
     LEAST_TEXT,
     PuzzleCheck,
+    PuzzleView,
     challenge_standing,
     largest_drawing,
     next_medal,
@@ -43,7 +46,7 @@ def test_it_fits_and_is_as_large_as_there_is_room_for(challenge: Challenge) -> N
         judgement = str(error)
     scales = []
     for width, height in ((118, 33), (130, 40), (200, 48), (260, 70)):
-        shown = puzzle_beside(challenge, board, judgement, width, height, "braille")
+        shown = puzzle_beside(PuzzleView(challenge, board, judgement, "braille"), width, height)
         rows = [row_text(each) for each in shown]
         assert max(map(len, rows)) <= width
         assert len(rows) <= height
@@ -83,7 +86,7 @@ def test_a_board_takes_the_rows_that_are_left_below_its_text(challenge: Challeng
     board = challenge.task.board("")
     assert board is not None
     for height in (22, 33):
-        rows = puzzle_page(challenge, board, "", 80, height, "braille")
+        rows = puzzle_page(PuzzleView(challenge, board, "", "braille"), 80, height)
         assert len(rows) <= height
         shown = [row_text(each) for each in rows]
         assert all(any(row_text(each).strip() in line for line in shown) for each in board.rows()[-1:])
@@ -119,7 +122,9 @@ def test_everything_that_is_still_wrong_with_a_layer_plan_stands_beside_it_where
     assert len(wrong) > 20
 
     def told(height: int) -> list[str]:
-        shown = [row_text(each) for each in puzzle_beside(challenge, board, "", 200, height, "braille")]
+        shown = [
+            row_text(each) for each in puzzle_beside(PuzzleView(challenge, board, "", "braille"), 200, height)
+        ]
         first = next(number for number, each in enumerate(shown) if wrong[0] in each)
         column = shown[first].index(wrong[0])
         text = " ".join(" ".join(each[column:] for each in shown[first:]).split())
@@ -127,6 +132,31 @@ def test_everything_that_is_still_wrong_with_a_layer_plan_stands_beside_it_where
 
     assert told(48) == wrong
     assert told(20) == wrong[: len(told(20))] != wrong
+
+
+def test_a_small_screen_keeps_the_story_and_leaves_the_keys_to_the_foot() -> None:
+    challenge = next(each for each in PLAYED if isinstance(each.task, LayersTask))
+    board = challenge.task.board("")
+    assert board is not None
+    board.mark()
+    rows = puzzle_page(PuzzleView(challenge, board, board.judgement(), "braille"), 80, 21)
+    shown = " ".join(" ".join(map(row_text, rows)).split())
+    assert len(rows) <= 21
+    assert challenge.story.split(".")[0] in shown
+    assert board.signs in shown
+    assert board.keys not in shown
+
+
+@pytest.mark.parametrize("scale", [1, 2, 4])
+def test_what_a_laser_sees_is_filled_and_not_dotted(scale: int) -> None:
+    task = next(each.task for each in PLAYED if isinstance(each.task, DevicesTask))
+    board = task.board("")
+    assert board is not None
+    board.mark()
+    laser, letters = task.floor[0], task.places.values()
+    lit = [each for each in task.floor if task.sees(laser, each) and each not in (laser, *letters)]
+    filled = sum(row_text(each).count(LIT) for each in board.rows(scale))
+    assert filled == 2 * scale * scale * len(lit), "all but the letters and the laser itself"
 
 
 @pytest.mark.parametrize("challenge", PLAYED, ids=lambda each: each.id)
@@ -144,7 +174,10 @@ def test_a_check_moves_no_row_of_a_puzzle(challenge: Challenge, width: int) -> N
     place = puzzle_page if width == 80 else puzzle_beside
     needed = [(("what 9 players here needed", "dim"),), (("to 9 moves", ""),)]
     before, after, failed = (
-        [row_text(each) for each in place(challenge, board, judgement, width, 21, "braille", check, beside)]
+        [
+            row_text(each)
+            for each in place(PuzzleView(challenge, board, judgement, "braille", check, beside), width, 21)
+        ]
         for check, beside in (
             (None, ()),
             (PuzzleCheck(following="Another one"), (needed,)),
@@ -166,7 +199,7 @@ def test_a_curve_and_figures_tell_what_the_moves_gained_where_there_is_room() ->
     assert board is not None
 
     def told() -> str:
-        return "\n".join(map(row_text, puzzle_beside(challenge, board, "", 200, 47, "braille")))
+        return "\n".join(map(row_text, puzzle_beside(PuzzleView(challenge, board, "", "braille"), 200, 47)))
 
     title, figures = board.curve()
     assert title not in told()

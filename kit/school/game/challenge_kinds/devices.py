@@ -14,7 +14,17 @@ from kit.document.blocks import Tone, ToneText
 from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
 from kit.plain_text import counted
-from kit.school.game.board import WALL, Board, Cell, History, figure_rows, free_cells, grid_rows, told_rows
+from kit.school.game.board import (
+    LIT,
+    WALL,
+    Board,
+    Cell,
+    History,
+    figure_rows,
+    free_cells,
+    grid_rows,
+    told_rows,
+)
 from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
@@ -133,12 +143,12 @@ class DevicesBoard(Board):
         lit = {square for laser in self._lasers for square in _squares_seen_from(task, laser)}
         signs: dict[Cell, tuple[str, str]] = {}
         for square in task.floor:
-            signs[square] = ("·", "warn") if square in lit else (" ", "")
+            signs[square] = (LIT, "warn") if square in lit else (" ", "")
         for name, square in task.places.items():
             signs[square] = (name.upper(), "good") if name in seen else (name, "bold")
         signs |= dict.fromkeys(self._lasers, ("*", "warn"))
         under = signs[self._cursor][0]
-        signs[self._cursor] = ("+" if under in " ·" else under, "chosen")
+        signs[self._cursor] = ("+" if under in (" ", LIT) else under, "chosen")
         return [
             *grid_rows(task.grid, signs, scale),
             row(),

@@ -76,10 +76,8 @@ class LayersTask(ChallengeTask):
 class LayersBoard(Board):
     """A table of entities and lasers by layers: Space puts one into a layer, and what is still wrong is counted."""
 
-    keys = (
-        "Arrows move, Space puts into a layer or takes out of it, u undoes it. Lines join what must collide, all else must not; "
-        "o is a laser, # a map."
-    )
+    keys = "Arrows move, Space puts into a layer or takes out of it, u undoes it."
+    signs = "Lines join what must collide, all else must not; o is a laser, # a map."
     mark_word = "put"
 
     def __init__(self, task: LayersTask, answer: str) -> None:
