@@ -61,6 +61,14 @@ class MapSketch:
         """Returns the square of the start or the target; None if it has not been set."""
         return next(((row.index(mark), number) for number, row in enumerate(self.rows) if mark in row), None)
 
+    def square_at(self, x: float, y: float) -> Square:
+        """The square of a point [m] from the lower left corner.
+
+        >>> MapSketch.room(5, 4, 0.5).square_at(0.75, 1.75)
+        (1, 0)
+        """
+        return int(x / self.cell), len(self.rows) - 1 - int(y / self.cell)
+
     def is_inside(self, square: Square) -> bool:
         return 0 <= square[0] < self.columns and 0 <= square[1] < len(self.rows)
 

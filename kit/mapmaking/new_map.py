@@ -6,6 +6,7 @@ import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Final
 
 import numpy as np
@@ -42,6 +43,9 @@ FINEST: Final = 0.01
 
 MAX_CELLS: Final = 1_000_000
 """Most cells of floor searched for a path: enough for 60 m by 60 m."""
+COARSEST: Final = 0.9 * ROBOT_RADIUS / 2
+"""Side of a cell [m] on which a way is looked for while a map is drawn."""
+MOST_COARSE_CELLS: Final = 100_000
 NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 WORLD_TEXT: Final = """\
@@ -158,10 +162,7 @@ def write_map(
     walls tinted, over which the way is shown. ``is_pair``: whether two robots start side by side. Raises NoRoute, OSError, and ValueError if there are no walls."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     with errors_name_file(folder), draft_folder(folder.parent) as made:
-        picture = Image.fromarray(np.where(plan.walls, 0, 255).astype(np.uint8))
-        picture.save(made / PICTURE_FILE)
-        (made / MAP_FILE).write_text(MAP_TEXT.format(resolution=plan.resolution))
-        (made / ROBOT_FILE).write_text(own_robot_text())
+        _write_walls(made, plan)
         start, target, route, grid = _choose_places(made, plan, title, middle_of_floor(plan))
         partner = None
         if is_pair:
@@ -191,6 +192,27 @@ def write_map(
             draw_overlay(overlay, plan, route, start, target).save(made / OVERLAY_FILE)
         made.rename(folder)
     return NewMap(folder, start, target, route, partner)
+
+
+def find_way(plan: WallPlan) -> Route | None:
+    """About the way that would prove a map of this plan, from its start to its target; those that are not set are chosen. It is
+    looked for on the coarsest floor that a robot is judged on, in about a second; None: the plan is too large for that. Raises
+    NoRoute, and ValueError if there are no walls."""
+    width, height = plan.size
+    cells = math.ceil(width * height / COARSEST**2)
+    if cells > MOST_COARSE_CELLS:
+        return None
+    with TemporaryDirectory() as folder:
+        _write_walls(Path(folder), plan)
+        return _choose_places(Path(folder), plan, "", middle_of_floor(plan), cells)[2]
+
+
+def _write_walls(made: Path, plan: WallPlan) -> None:
+    """The files of a map but for its world and its card."""
+    picture = Image.fromarray(np.where(plan.walls, 0, 255).astype(np.uint8))
+    picture.save(made / PICTURE_FILE)
+    (made / MAP_FILE).write_text(MAP_TEXT.format(resolution=plan.resolution))
+    (made / ROBOT_FILE).write_text(own_robot_text())
 
 
 def own_robot_text() -> str:
@@ -286,12 +308,12 @@ def draw_overlay(
 
 
 def _choose_places(
-    made: Path, plan: WallPlan, title: str, middle: Point
+    made: Path, plan: WallPlan, title: str, middle: Point, max_cells: int = MAX_CELLS
 ) -> tuple[Pose, Point, Route, OccupancyGrid]:
     """Start and target, asked for or chosen, the way between them, and the floor."""
     seed = plan.start or middle
     _write_world(made, title, Pose(*seed, 0.0))
-    grid: OccupancyGrid = occupancy_grid_of(load_world(made / WORLD_FILE), MAX_CELLS)
+    grid: OccupancyGrid = occupancy_grid_of(load_world(made / WORLD_FILE), max_cells)
     if grid.cell_size > ROBOT_RADIUS / 2:
         raise NoRoute(
             f"A map of {plan.size[0]:.3g} m by {plan.size[1]:.3g} m is too large to prove a way in it. Give it a smaller scale."
@@ -300,7 +322,7 @@ def _choose_places(
     if plan.start is None and free[grid.cell_at(*middle)] <= ROBOT_RADIUS:  # a wall may lead through it
         place = grid.cell_center(tuple(np.unravel_index(int(free.argmax()), grid.shape)))  # type: ignore[arg-type]  # two numbers
         _write_world(made, title, Pose(*place, 0.0))
-        grid = occupancy_grid_of(load_world(made / WORLD_FILE), MAX_CELLS)
+        grid = occupancy_grid_of(load_world(made / WORLD_FILE), max_cells)
     if plan.start and plan.target:
         start, target = plan.start, plan.target
     elif plan.target:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from asyncio import to_thread
-from collections.abc import Callable
+from asyncio import sleep, to_thread
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import events, work
@@ -14,13 +14,13 @@ from textual.message import Message
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction, digits
-from kit.document.rows import Row, row
+from kit.document.rows import Row, broken, row
 from kit.mapmaking.map_sketch import MapSketch, SketchMark, Square
 from kit.mapmaking.new_map import NewMap
 from kit.render.encode import Frame
 from kit.render.frame_text import write_text
 from kit.render.roles import Role
-from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.key_rows import bindings, footer, help_page
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
@@ -35,6 +35,8 @@ PANEL_FROM: Final = 60
 """Columns of the terminal from which the panel is shown."""
 CELL_COLUMNS: Final = 2
 """A character is about twice as high as wide: two of them make a square."""
+WAY: Final = "+"
+"""A square of the way, as it is drawn where there are no other characters."""
 PENS: Final[tuple[tuple[SketchMark, str], ...]] = (
     ("#", "wall"),
     (" ", "floor"),
@@ -43,6 +45,11 @@ PENS: Final[tuple[tuple[SketchMark, str], ...]] = (
 )
 MAX_UNDO: Final = 200
 """Changes that can be undone, the newest ones."""
+CALM_S: Final = 0.5
+"""After a change, before a way is looked for [s]."""
+LEAST_KEYS: Final = 40
+"""Columns of the panel from which on it lists all keys, where they have room."""
+LOOKING: Final = row(("Looking for a way ...", "dim"))
 
 
 class SketchView(FrameView):
@@ -68,9 +75,9 @@ class SketchView(FrameView):
         """Rows of characters to a square."""
         self._dragged: Square | None = None
 
-    def draw(self, sketch: MapSketch, cursor: Square, columns: int, rows: int) -> None:
+    def draw(self, sketch: MapSketch, way: Sequence[Square], cursor: Square, columns: int, rows: int) -> None:
         """Shows as much of the sketch as the columns and rows have room for, the cursor with it, in the largest squares in
-        which all of it fits."""
+        which all of it fits. ``way``: the squares that a robot drives through, the start's first."""
         if columns < CELL_COLUMNS or rows < 1:
             return
         self._side = side = max(1, min(columns // (CELL_COLUMNS * sketch.columns), rows // len(sketch.rows)))
@@ -81,8 +88,12 @@ class SketchView(FrameView):
         )
         across = CELL_COLUMNS * side
         frame = Frame.empty(across * wide, rows)
+        signs: dict[Square, str] = dict.fromkeys(way, WAY)
+        if way:
+            signs |= {way[0]: "s", way[-1]: "t"}
         for y, line in enumerate(sketch.rows[top : top + high]):
             for x, mark in enumerate(line[left : left + wide]):
+                mark = signs.get((x + left, y + top), mark) if mark == " " else mark
                 texts, role = self._square_texts(mark, is_chosen=(x + left, y + top) == cursor)
                 for number, text in enumerate(texts):
                     write_text(frame, y * side + number, across * x, text, role)
@@ -95,15 +106,17 @@ class SketchView(FrameView):
         match mark:
             case "#":
                 texts, role = [("#" if self._is_ascii else "█") * across] * self._side, Role.WALL
-            case "S" | "T":
-                texts, role = self._in_middle(mark), Role.ROBOT if mark == "S" else Role.TARGET
+            case "S" | "T" | "s" | "t":
+                texts, role = self._in_middle(mark), Role.ROBOT if mark in "Ss" else Role.TARGET
+            case "+":
+                texts, role = self._in_middle(mark if self._is_ascii else "•"), Role.PATH
             case _:
                 texts, role = self._in_middle("." if self._is_ascii else "·"), Role.BEAM
         if not is_chosen:
             return texts, role
         role = Role.CONTACT if mark == "#" else Role.TEXT
         if self._side == 1:  # too narrow for two brackets around a mark
-            return [f"[{mark if mark in 'ST' else ']'}"], role
+            return [f"[{mark if mark in 'STst' else ']'}"], role
         return [f"[{text[1:-1]}]" for text in texts], role
 
     def _in_middle(self, glyph: str) -> list[str]:
@@ -199,6 +212,11 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         self._before: list[MapSketch] = []
         self._saved: NewMap | None = None
         self._view = SketchView(theme)
+        self._way: tuple[Square, ...] = ()
+        """The squares from the start to the target through which a robot has a way."""
+        self._proof: Sequence[Row] = (LOOKING,)
+        """What is known of it."""
+        self._is_proving = False
 
     @property
     def saved(self) -> NewMap | None:
@@ -214,6 +232,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
 
     def on_mount(self) -> None:
         self.call_after_refresh(self._show, self._note)
+        self._prove()
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
@@ -226,7 +245,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         self.query_one("#panel", TextRows).show(self._panel())
         self.query_one("#keys", TextRows).show([footer(self.screen_actions, width)])
         room = width if width < PANEL_FROM else width - PANEL_WIDTH
-        self._view.draw(self.sketch, self.cursor, room, self.size.height - 2)
+        self._view.draw(self.sketch, self._way, self.cursor, room, self.size.height - 2)
 
     def _panel(self) -> list[Row]:
         sketch, (column, line) = self.sketch, self.cursor
@@ -241,8 +260,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
                     (where, "dim"),
                 )
             )
-        return [
-            *rows,
+        rows += [
             row(),
             row(("cursor", "dim")),
             row(f" x {x:6.2f} m"),
@@ -251,16 +269,42 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
             row(("one square", "dim")),
             row(f" {sketch.cell:g} m"),
             row(),
-            row(("The robot needs", "dim")),
-            row((" 0.26 m to get through.", "dim")),
-            row(("If not set, start and", "dim")),
-            row(("target are chosen.", "dim")),
+            row(("the way", "dim")),
+            *self._proof,
         ]
+        width, height = self.query_one("#panel", TextRows).size
+        keys = help_page(self.screen_actions) if width >= LEAST_KEYS else ()
+        shown, listed = (
+            [each for parts in told for each in broken(parts, max(1, width))] for told in (rows, keys)
+        )
+        return [*shown, *listed] if len(shown) + len(listed) <= height else shown
+
+    @work(exclusive=True, group="proof")
+    async def _prove(self) -> None:
+        """Looks for a way once nothing is drawn for a moment, in another thread, in one at a time."""
+        await sleep(CALM_S)
+        if self._is_proving:  # it looks again when it is done
+            return
+        self._is_proving, sketch = True, self.sketch
+        self._await_proof(sketch)
+
+    @work(group="proof of one sketch")
+    async def _await_proof(self, sketch: MapSketch) -> None:
+        found = await to_thread(_find_way, sketch)
+        self._is_proving = False
+        if sketch != self.sketch:
+            self._prove()
+        elif self.is_attached:
+            self._way, self._proof = found
+            self._show()
 
     def _change(self, sketch: MapSketch, *, remembers: bool = True) -> None:
         if remembers and sketch != self.sketch:
             self._before = [*self._before, self.sketch][-MAX_UNDO:]
         is_changed, self.sketch = sketch != self.sketch, sketch
+        if is_changed:
+            self._way, self._proof = (), (LOOKING,)
+            self._prove()
         self._show(self._keep(sketch) if is_changed else "")
 
     # Keys and mouse
@@ -336,3 +380,23 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     def action_help(self) -> None:
         notes = (("mouse", "draws with the pen; the right button clears"),)
         self.app.push_screen(HelpDialog("Drawing a map", self.screen_actions, notes))
+
+
+def _find_way(sketch: MapSketch) -> tuple[tuple[Square, ...], Sequence[Row]]:
+    """About the squares of the way that would prove a map, and what is to be said of it. Takes about a second."""
+    from kit.mapmaking.map_drawing import read_drawing  # numpy, of no use to the first frame
+    from kit.mapmaking.new_map import find_way
+    from kit.mapmaking.route import ROBOT_RADIUS
+
+    try:
+        way = find_way(read_drawing(sketch.text, cell=sketch.cell))
+    except ValueError as error:
+        return (), (row((str(error), "warn")),)
+    if way is None:
+        return (), (row(("Saving looks for one: the map is large.", "dim")),)
+    chosen = "" if sketch.find("S") and sketch.find("T") else "; s, t: chosen, as not set"
+    return tuple(dict.fromkeys(sketch.square_at(*point) for point in way.points)), (
+        row((f"{way.length:.1f} m from start to target", "good")),
+        row(f"{way.width:.2f} m at its narrowest; a robot needs {2 * ROBOT_RADIUS:.2f} m"),
+        row((f"dots show it{chosen}", "dim")),
+    )

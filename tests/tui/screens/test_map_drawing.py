@@ -69,6 +69,35 @@ def test_a_map_is_drawn_with_the_keys_and_written(desk: Desk) -> None:
     assert card.cases[0].target == pytest.approx((8.5 * cell, 2.5 * cell))
 
 
+@pytest.mark.parametrize("ascii_only", [False, True])
+def test_the_way_is_shown_while_one_draws_and_why_there_is_none(desk: Desk, ascii_only: bool) -> None:
+    dot = "+" if ascii_only else "•"
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "m from start to target")
+        way = [line for line in rows(pilot) if dot in line]
+        assert way
+        assert not any(dot in line for line in drawing(pilot).sketch.rows), "nothing of it is drawn"
+        await pilot.press("3", "space", "4", "end", "left", "space")
+        await until(
+            pilot, lambda: dot in text(pilot) and "chosen" not in text(pilot), "the way between those set"
+        )
+        await pilot.press("1", "home", "right", "right", "right", "right", "up", *["shift+down"] * 5)
+        await seen(pilot, "There is no path")
+        assert dot not in text(pilot)
+        await pilot.press("u")
+        await seen(pilot, "m from start to target")
+
+    stage(desk.open, scene, size=(120, 35), ascii_only=ascii_only)
+
+
+def test_a_sheet_too_large_for_a_quick_look_says_that_saving_looks(tmp_path: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Saving looks for one")
+
+    stage(Desk(tmp_path / "mine", MapSketch.room(200, 200)).open, scene, size=(120, 35))
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("ascii_only", [False, True])
 @pytest.mark.parametrize(("size", "side"), [((80, 24), 2), ((80, 12), 1), ((120, 35), 4)])
