@@ -131,6 +131,8 @@ def join_shared_game(
         messages.fail(str(error))
     if screen.ended:
         click.echo(f"The game has ended: {screen.ended}.")
+    elif screen.has_left:
+        click.echo("You have left the game; the other player has won.")
     raise SystemExit(code)
 
 

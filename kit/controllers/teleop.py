@@ -76,7 +76,7 @@ class Teleop(Node):
     def on_collisions(self, message: Collisions) -> None:
         if not message.collisions:
             return
-        self.get_logger().info("Bumped: back to the start.")
+        self.get_logger().info("Bumped: back to the start. Press a key again to drive on.")
         self.held.clear()
         self.send()
         x, y, theta = self.home

@@ -110,6 +110,8 @@ class Choice:
     tone: Tone = Tone.PLAIN
     mark: str = " "
     """One character in the margin: ``>`` chosen, ``+`` right, ``x`` wrong."""
+    is_open: bool = True
+    """Whether its key chooses it now."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -236,7 +236,8 @@ def _code_line_rows(line: str, page: Page) -> list[Row]:
 
 def _choice_rows(entry: Choice, page: Page) -> list[Row]:
     mark = " " if page.is_heard else entry.mark
-    made = entry_rows(mark, entry.key, printable_line(entry.text), entry.tone, page.width)
+    text = printable_line(entry.text)
+    made = entry_rows(mark, entry.key, text, entry.tone, page.width, is_open=entry.is_open)
     return [*made, ()] if page.is_roomy else made
 
 

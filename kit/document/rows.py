@@ -135,12 +135,15 @@ def text_width(width: int, widest: int = TEXT_WIDTH) -> int:
     return max(20, min(width - 2 * MARGIN, widest))
 
 
-def entry_rows(mark: str, key: str, text: str, style: str, columns: int) -> list[Row]:
-    """A text of ``columns`` with the key that chooses it, and its mark in the margin; later lines begin below its first word."""
+def entry_rows(
+    mark: str, key: str, text: str, style: str, columns: int, *, is_open: bool = True
+) -> list[Row]:
+    """A text of ``columns`` with the key that chooses it, if it ``is_open``, and its mark in the margin; later lines begin below
+    its first word."""
     first, *rest = wrap(text, columns - len(key) - 2)
     indent = " " * (MARGIN + len(key) + 2)
     return [
-        row((f"{mark:>{MARGIN - 1}} ", style), (key, "press"), "  ", (first, style)),
+        row((f"{mark:>{MARGIN - 1}} ", style), (key, "press" if is_open else style), "  ", (first, style)),
         *(row((indent + line, style)) for line in rest),
     ]
 

@@ -69,6 +69,14 @@ def widest_route(grid: OccupancyGrid, start: Point, target: Point, radius: float
     )
 
 
+def clear_of_walls(
+    grid: OccupancyGrid, place: Point, distance: float = 1.25 * ROBOT_RADIUS
+) -> tuple[Point, ...]:
+    """The way from a place to where the walls are ``distance`` away [m], or as far as it leads straight away from them."""
+    cells = _away_from_walls(grid, grid.cell_at(*place), distance)
+    return (place, *map(grid.cell_center, cells[1:]))
+
+
 def check_closed(grid: OccupancyGrid, start: Point, radius: float = ROBOT_RADIUS) -> None:
     """Raises NoRoute if a robot gets from the start to the outside of all walls."""
     reached = grid.reached_from(*start, 2 * radius)

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from kit.fields.occupancy_grid import occupancy_grid_of
+from kit.fields.occupancy_grid import OccupancyGrid, occupancy_grid_of
 from kit.geometry import wrap_angle
-from kit.mapmaking.route import widest_route
+from kit.mapmaking.route import NEAREST_TARGET, NoRoute, Point, clear_of_walls, widest_route
 from kit.msg.geometry_msgs import Twist
 from kit.run.lockstep import Observer
 
@@ -79,4 +79,19 @@ class PlaceDriver(WayDriver):
         if scenario.robot is None:
             raise ValueError("There is no robot to drive here.")
         pose = session.runner.simulation.pose(scenario.robot)
-        super().__init__(session, widest_route(occupancy_grid_of(scenario.world), pose[:2], place).points)
+        grid = occupancy_grid_of(scenario.world)
+        out = clear_of_walls(grid, pose[:2])
+        super().__init__(session, (*out, *_way(grid, out[-1], place)))
+
+
+def _way(grid: OccupancyGrid, start: Point, place: Point) -> tuple[Point, ...]:
+    """The widest way, and at its end what leads nearer to the walls. Raises NoRoute."""
+    if not grid.inside[grid.cell_at(*place)]:
+        raise NoRoute("There is no floor where you clicked.")
+    back = clear_of_walls(grid, place)[::-1]
+    if math.dist(start, back[0]) < NEAREST_TARGET:
+        return back
+    try:
+        return (*widest_route(grid, start, back[0]).points, *back)
+    except NoRoute:
+        raise NoRoute("The robot does not fit through any way to where you clicked.") from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
@@ -19,7 +20,7 @@ from kit.school.progress import ProgressError
 from kit.school.survey import AnswerShape, AnswerValue, SurveyPhase, SurveyQuestion
 
 KEPT: Final = (
-    ("what is kept", "each answer, as soon as you go on, go back or leave"),
+    ("what is kept", "each answer, as soon as you go on, go back, leave or quit"),
     ("blank", "Enter without an answer; it counts as nothing else"),
     ("who sees it", "your teacher, once you hand in your progress"),
 )
@@ -238,6 +239,11 @@ class FormDialogue(Dialogue):
     def leave(self) -> Effect:
         self._save_change()
         return Leave()
+
+    def close(self) -> None:
+        """Keeps what was chosen where the kit is quit, or its terminal closed, in the middle of a question."""
+        with suppress(InvalidAnswer, ProgressError):  # nobody is there to be told
+            self._save_change()
 
     @property
     def _question(self) -> SurveyQuestion:

@@ -12,6 +12,7 @@ from textual.binding import Binding, BindingType
 from textual.filter import DimFilter, LineFilter
 from textual.screen import Screen
 
+from kit.dialogue.actions import ScreenActions
 from kit.render.palettes import COLOR_SCHEMES
 from kit.tui.input.drive import ModeName
 from kit.tui.input.driver import KeyDriver
@@ -86,6 +87,21 @@ class KitApp(App[None]):
         from kit.tui.screens.palette import open_palette  # of no use to the first frame
 
         await open_palette(self, self.switch_theme)
+
+    def on_mouse_scroll_down(self) -> None:
+        self._turn_wheel("down")
+
+    def on_mouse_scroll_up(self) -> None:
+        self._turn_wheel("up")
+
+    @work(group="wheel")
+    async def _turn_wheel(self, key: str) -> None:
+        """Where the screen chooses or scrolls with a key and nothing below the pointer has a use for the wheel, it does too."""
+        actions: ScreenActions | None = getattr(self.screen, "screen_actions", None)
+        for action in () if actions is None else actions.records:
+            for keys, call in action.bindings:
+                if key in keys.split(","):
+                    await self.screen.run_action(call)
 
     def begin(self, screen: Screen[Any]) -> None:
         """Opens with this screen when it runs."""

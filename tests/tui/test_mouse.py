@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from textual import events
 from textual.pilot import Pilot
+from textual.widgets import OptionList
 
 from kit.controllers import prepare_workspace
 from kit.document.rows import Row, row
@@ -18,6 +19,7 @@ from kit.tui.rows.key_rows import footer, key_row
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import screen_actions_of
 from kit.tui.screens.levels import LevelsScreen
+from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.start import StartScreen
 from kit.tui.widgets.text_rows import key_at
@@ -121,6 +123,39 @@ def test_a_click_chooses_a_level_and_another_opens_it(tmp_path: Path) -> None:
         await pilot.pause()
         await pilot.click(offset=place_of(pilot, "First drive"))
         await seen(pilot, "The clock starts with your first key")
+
+    with ProgressJournal(workspace.folder) as journal:
+        stage(lambda theme: LevelsScreen(theme, journal, workspace), scene)
+
+
+async def turn(pilot: Pilot[None], words: str, *, down: bool) -> None:
+    """Turns the wheel by one step above these words."""
+    x, y = place_of(pilot, words)
+    kind = events.MouseScrollDown if down else events.MouseScrollUp
+    pilot.app.post_message(kind(None, x, y, 0, 1 if down else -1, 0, False, False, False, x, y))
+    await pilot.pause()
+
+
+@pytest.mark.long
+def test_the_wheel_chooses_in_lists_and_a_click_beside_a_box_closes_it(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LevelsScreen)
+        await seen(pilot, "First drive")
+        await turn(pilot, "Two doors", down=True)
+        await until(pilot, lambda: screen.chosen.level.id != "first-drive", "another level")
+        await turn(pilot, "Two doors", down=False)
+        await until(pilot, lambda: screen.chosen.level.id == "first-drive", "the level before")
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        options = pilot.app.screen.query_one(OptionList)
+        await until(pilot, lambda: options.option_count > 5, "the commands")
+        await turn(pilot, "Leaderboard", down=True)
+        await until(pilot, lambda: options.highlighted == 1, "the second command")
+        await pilot.click(offset=(0, 0))
+        await until(pilot, lambda: pilot.app.screen is screen, "the list of levels")
 
     with ProgressJournal(workspace.folder) as journal:
         stage(lambda theme: LevelsScreen(theme, journal, workspace), scene)

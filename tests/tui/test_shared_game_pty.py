@@ -61,7 +61,7 @@ def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(kit: Open, tmp_p
             host.send(b"\x03")
             assert host.wait() == 0
             shows(host, "kit replay")
-        (film,) = (tmp_path / "home" / "films").iterdir()
+        (film,) = (tmp_path / "home" / "recordings").iterdir()
         replay = kit("replay", str(film))
         shows(replay, "0:03")  # the countdown is part of it
         replay.send(b"\x03")

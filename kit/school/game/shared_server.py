@@ -134,7 +134,10 @@ class SharedGameServer:
         """Tells everybody how things stand, and returns it, with the names of all; a player who has left keeps the name. Of
         several states that could not be sent yet only the newest is."""
         self._player_name = self.player_name or self._player_name
-        named = replace(state, names=(self._name, self._player_name), watching=self.spectators)
+        names = self._name, self._player_name
+        if names[0] == names[1]:  # one user in two terminals
+            names = f"{names[0]} 1", f"{names[1]} 2"
+        named = replace(state, names=names, watching=self.spectators)
         self._newest = encode(encode_state(named))
         self._wake()
         return named

@@ -209,7 +209,7 @@ class QuizDialogue(Dialogue):
 
     def _options(self, item: QuizItem) -> list[Block]:
         """``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""
-        told, entries = self.stage is QuizStage.TOLD, []
+        told, is_asked, entries = self.stage is QuizStage.TOLD, self.stage is QuizStage.ASKED, []
         for index, option in enumerate(item.options):
             is_chosen = self.choice is not None and self.choice.option == index
             mark, tone = (">", Tone.BOLD) if is_chosen else (" ", Tone.PLAIN)
@@ -217,8 +217,8 @@ class QuizDialogue(Dialogue):
                 mark, tone = "+", Tone.GOOD
             elif told:
                 mark, tone = ("x", Tone.BAD) if is_chosen else (" ", Tone.DIM)
-            entries.append(Choice(str(index + 1), option.text, tone, mark))
-        not_sure = Choices((Choice("0", "I am not sure", Tone.DIM),), is_tight=True)
+            entries.append(Choice(str(index + 1), option.text, tone, mark, is_asked))
+        not_sure = Choices((Choice("0", "I am not sure", Tone.DIM, is_open=is_asked),), is_tight=True)
         return [Choices(tuple(entries)), *([] if told else [not_sure])]
 
     def _feedback(self, item: QuizItem, choice: AnswerChoice) -> list[Block]:

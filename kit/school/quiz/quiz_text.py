@@ -97,7 +97,7 @@ def today_line(schedule: PracticeSchedule) -> str:
         return "Due today: " + ", ".join(f"{left} from {title}" for title, left in due) + "."
     if schedule.next_due is not None:
         return f"Nothing is due today. Next: {days_text(schedule.next_due, schedule.today)}."
-    return "Nothing is scheduled yet: start with `kit quiz`."
+    return "Nothing is scheduled yet: begin with the twelve, `kit quiz`."
 
 
 def tally_line(counts: OutcomeCounts) -> str:

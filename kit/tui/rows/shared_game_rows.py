@@ -138,7 +138,7 @@ def _task_text(mode: SharedMode, state: SharedGameState, me: int | None) -> str:
 
 def _score_text(mode: SharedMode, state: SharedGameState, number: int) -> str:
     score = state.scores[number]
-    return counted(round(score), "target") if mode is SharedMode.RACE else f"{score:.1f} s against"
+    return counted(round(score), "target") if mode is SharedMode.RACE else f"{score:.1f} s penalty"
 
 
 def _end_text(state: SharedGameState, me: int | None) -> str:

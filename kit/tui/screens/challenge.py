@@ -101,7 +101,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
-        yield TextRows(id="body")
+        yield TextRows(id="body", opens=False)  # a board's cursor is no entry of a list
         yield TextRows(id="result")
         yield TextRows(id="keys")
 

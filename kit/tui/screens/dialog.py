@@ -7,6 +7,7 @@ from typing import Final, TypeVar
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.segment import Segment
 from rich.style import Style
+from textual import events
 from textual.screen import ModalScreen
 
 Result = TypeVar("Result")
@@ -32,6 +33,15 @@ class Dialog(ModalScreen[Result]):
     DEFAULT_CSS = """
     Dialog { align: center middle; }
     """
+
+    def on_click(self, event: events.Click) -> None:
+        """A click beside the box closes it."""
+        if event.widget is self and self.is_active:
+            self.close()
+
+    def close(self) -> None:
+        """Gives up what the dialog asks for."""
+        self.dismiss(None)
 
     def render(self) -> RenderableType:
         shown = super().render()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import ClassVar, Final
 
 from textual import events
@@ -14,6 +15,7 @@ from textual.widgets import Input
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, broken, row
 from kit.tui.input.drive_keys import base_key
+from kit.tui.input.driver import key_driver
 from kit.tui.rows.key_rows import help_page
 from kit.tui.screens.dialog import Dialog
 from kit.tui.widgets.text_field import KitInput
@@ -27,12 +29,20 @@ MODIFIERS: Final = ("left_shift", "right_shift", "left_control", "right_control"
 SCROLL_ROWS: Final = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 
 
-MOUSE_NOTE: Final = (
-    ("mouse", "left to the terminal, so that text can be selected"),
-    ("KIT_MOUSE=1 kit", "clicks press keys, choose, drive; the wheel zooms"),
-    ("", "most terminals still select text with Shift"),
-)
-"""What the mouse does, on every help page."""
+MOUSE_NOTES: Final = {
+    True: (
+        ("mouse", "clicks press keys and choose; on a floor they drive"),
+        ("", "there; the wheel zooms and chooses; most terminals"),
+        ("", "select text with Shift"),
+        ("Ctrl-P Mouse", "leaves it to the terminal"),
+    ),
+    False: (
+        ("mouse", "left to the terminal, so that text can be selected"),
+        ("Ctrl-P Mouse", "gives it to the kit: clicks press keys, choose, drive"),
+        ("KIT_MOUSE=1 kit", "begins with that"),
+    ),
+}
+"""What the mouse does, on every help page: where the kit has it, and where not."""
 
 
 class MessageDialog(Dialog[None]):
@@ -93,15 +103,17 @@ class MessageDialog(Dialog[None]):
         elif key not in MODIFIERS:
             self.dismiss()
 
-    def on_click(self) -> None:
+    def on_click(self, event: events.Click) -> None:
         if self.is_active:
             self.dismiss()
 
-    def on_mouse_scroll_down(self) -> None:
+    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
+        event.stop()
         self._top += 1
         self._show()
 
-    def on_mouse_scroll_up(self) -> None:
+    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
+        event.stop()
         self._top -= 1
         self._show()
 
@@ -116,7 +128,16 @@ class HelpDialog(MessageDialog):
         *notes: Sequence[tuple[str, str]],
         without: Sequence[str] = (),
     ) -> None:
-        super().__init__(title, help_page(screen, *notes, MOUSE_NOTE, without=without))
+        super().__init__(title, ())
+        self._page = partial(help_page, screen, without=without)
+        self._notes = notes
+
+    def compose(self) -> ComposeResult:
+        driver = key_driver(self.app)
+        tells_of_mouse = any(name == "mouse" for note in self._notes for name, _ in note)
+        mouse = () if tells_of_mouse else (MOUSE_NOTES[driver is not None and driver.has_mouse],)
+        self._shown_rows = self._page(*self._notes, *mouse)
+        yield from super().compose()
 
 
 class NameDialog(Dialog[str | None]):

@@ -25,7 +25,7 @@ from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import TextRows
+from kit.tui.widgets.text_rows import RowClicked, TextRows
 
 if TYPE_CHECKING:
     from kit.tui.theme import Theme
@@ -168,7 +168,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
             ScreenAction("draw_along", "Shift+arrows", "draw", "draw with the pen while moving",
                    (("shift+up", "draw(0, -1)"), ("shift+down", "draw(0, 1)"), ("shift+left", "draw(-1, 0)"), ("shift+right", "draw(1, 0)")),
                    "Shift"),
-            ScreenAction("put", "Space", "put", "draw with the pen under the cursor", (("space", "draw(0, 0)"),)),
+            ScreenAction("put", "Space", "draw", "draw with the pen under the cursor", (("space", "draw(0, 0)"),)),
             ScreenAction("pen", "1 2 3 4", "pen", "choose the pen: wall, floor, start, target", digits("pen", 1, 4), "1-4"),
             ScreenAction("square_size", "[ ]", "scale", "make the squares smaller or larger (map scale)",
                    (("left_square_bracket", "scale(-1)"), ("right_square_bracket", "scale(1)")), "[ ]"),
@@ -338,6 +338,11 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         self._pen = PENS[number - 1][0]
         self._show()
 
+    def on_row_clicked(self, event: RowClicked) -> None:
+        """A click on a pen takes it."""
+        if event.rows.id == "panel" and 1 <= event.number <= len(PENS):
+            self.action_pen(event.number)
+
     def on_sketch_view_drawn(self, event: SketchView.Drawn) -> None:
         if self.sketch.is_inside(event.last):
             self.cursor = event.last
@@ -364,8 +369,15 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     @work(exclusive=True)
     async def action_back(self) -> None:
         if self._before or self._note:
-            choices = [PickerItem("stay", "go on drawing"), PickerItem("leave", "leave without saving")]
-            if await self.app.push_screen_wait(Picker("The map is not saved", choices)) != "leave":
+            choices = [
+                PickerItem("stay", "go on drawing"),
+                PickerItem("save", "save and leave"),
+                PickerItem("leave", "leave without saving"),
+            ]
+            chosen = await self.app.push_screen_wait(Picker("The map is not saved", choices))
+            if chosen == "save":
+                self.action_save()
+            if chosen != "leave":
                 return
         self.is_given_up = True
         self._leave()

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 from kit.dialogue.actions import ScreenActions
 from kit.render.palettes import COLOR_SCHEMES
 from kit.tui.input.driver import key_driver
+from kit.tui.screens.dialog import Dialog
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.terminal import MOUSE_VARIABLE
 
@@ -40,7 +42,10 @@ class PaletteSource(Protocol):
 async def open_palette(app: App[None], switch_theme: Callable[[str], None]) -> None:
     """Shows what the present screen can do, what the first screen opens, and the themes; does what is chosen."""
     screen, first = app.screen, app.screen_stack[1]
-    if isinstance(screen, Picker):
+    if isinstance(screen, MessageDialog):  # the commands wanted are those of the screen below
+        screen.dismiss()
+        screen = next(each for each in reversed(app.screen_stack) if each is not screen)
+    if isinstance(screen, Dialog):
         return
     commands = [*_screen_commands(screen), *_theme_commands(app, switch_theme), *_mouse_commands(app)]
     picker = Picker("Commands", _command_items(commands))

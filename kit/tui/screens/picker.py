@@ -33,6 +33,9 @@ WAY_ON: Final = "Backspace takes letters back; fewer of them may find it."
 DELETING: Final = "Backspace delete, Esc back"
 COLUMNS_AROUND: Final = 7
 """Columns of the border, of the mark of the chosen line and of the scroll bar."""
+FILTER_HINT: Final = "type to filter"
+FILTERED_FROM: Final = 8
+"""Lines from which on a list says that typing filters it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +66,16 @@ class FilterInput(KitInput):
         Binding("home", "screen.choose(0, -1000)", show=False),
         Binding("end", "screen.choose(0, 1000)", show=False),
     ]
+
+
+class ChoiceList(OptionList):
+    """The list below it: the wheel chooses, as arrow keys do."""
+
+    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
+        event.prevent_default()
+
+    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
+        event.prevent_default()
 
 
 class Picker(Dialog[str | None]):
@@ -109,8 +122,8 @@ class Picker(Dialog[str | None]):
         with Vertical() as box:
             box.border_title = self._title
             box.border_subtitle = CHOOSING
-            yield FilterInput(placeholder="type to filter", select_on_focus=False)
-            yield OptionList()
+            yield FilterInput(placeholder=FILTER_HINT, select_on_focus=False)
+            yield ChoiceList()
 
     def on_mount(self) -> None:
         self.query_one(Input).cursor_blink = False
@@ -143,6 +156,9 @@ class Picker(Dialog[str | None]):
     def action_back(self) -> None:
         self.dismiss(None)
 
+    def close(self) -> None:
+        self.action_back()
+
     def action_choose(self, columns: int, rows: int) -> None:
         options = self.query_one(OptionList)
         if self._shown:
@@ -156,6 +172,7 @@ class Picker(Dialog[str | None]):
         longest = max((len(choice.text) for choice in choices), default=0) + self._width + COLUMNS_AROUND
         self._columns = max(LIST_WIDTH, min(longest, WIDEST))
         if self.is_mounted and self.is_attached:
+            self.query_one(Input).placeholder = FILTER_HINT if len(choices) >= FILTERED_FROM else ""
             options = self.query_one(OptionList)
             self.query_one(Vertical).styles.width = self._columns
             if options.highlighted is not None:

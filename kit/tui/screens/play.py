@@ -135,13 +135,13 @@ class PlayScreen(WatchScreen):
         if self._before_takeover is None and self.view is not None and self.view.controller is not None:
             self._before_takeover = self._controller
         self.follow_agent("", None)
-        self.driver_name = "to where you clicked"
-        self.host.post(lambda session: session.drive_with(None))
 
         def make(session: Session) -> Observer:
             from kit.run.place_driver import PlaceDriver  # of no use to the first frame
 
             self._place_driver = driver = PlaceDriver(session, event.place)
+            session.drive_with(None)
+            self.driver_name = "to where you clicked"
             return driver
 
         self.host.observe(make)

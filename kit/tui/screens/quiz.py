@@ -50,9 +50,10 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
         return
     schedule = build_schedule(bank, events, local_now())
     plans: dict[str, QuestionPlan] = {TODAY: PracticePlan(bank), TWELVE: quiz_plan(bank)}
+    today = PickerItem(TODAY, "today", today_line(schedule))
+    twelve = PickerItem(TWELVE, "the twelve", "The twelve ideas, one question each.")
     choices = [
-        PickerItem(TODAY, "today", today_line(schedule)),
-        PickerItem(TWELVE, "the twelve", "The twelve ideas, one question each."),
+        *((today, twelve) if schedule.queue else (twelve, today)),
         PickerItem(SCORES, "scores", "What you know by topic, and how well you judge it."),
     ]
     lesson_plans = await to_thread(_lesson_plans, bank)
@@ -99,7 +100,10 @@ async def _ask(screen: Screen[Any], journal: ProgressJournal, bank: QuestionBank
         return
     if session.current_item is None:
         screen.app.push_screen(
-            MessageDialog(plan.title, "There is nothing to ask now. Come back another day.")
+            MessageDialog(
+                plan.title,
+                f"There is nothing to ask now. {today_line(build_schedule(bank, journal.events(), local_now()))}",
+            )
         )
         return
     await screen.app.push_screen_wait(DialogueScreen(QuizDialogue(session)))

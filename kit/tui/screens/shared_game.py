@@ -15,6 +15,7 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import Row, row
 from kit.geometry import Pose
+from kit.plain_text import wrap
 from kit.render.scene import Disc, Scene, ScenePath
 from kit.run.recording import Recorder, Recording, save_recording
 from kit.run.scenario import Scenario
@@ -35,15 +36,18 @@ from kit.school.game.two_players import (
 from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings
-from kit.tui.rows.shared_game_rows import HOST, players_card, shared_heading, shared_message
+from kit.tui.rows.shared_game_rows import HOST, RULES, players_card, shared_heading, shared_message
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LETTER_NOTES
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.workspace import Workspace
 
 GUEST_PLAYER: Final = 1
+RULE_WIDTH: Final = 56
+"""Columns of the rule on the page of keys."""
 FOOTER: Final = ("drive_keys", "stop_robot", "restart", "help", "back", "quit")
 OFF_FOOTER: Final = ("ghosts", "drive_mode", "zoom", *VIEW_IDS)
 """The actions of both players' screens."""
@@ -55,7 +59,6 @@ class SharedScreen(WatchScreen):
     Ghosts do not travel: each side has its own best drives and the kit's reference, which began where the host's robot does.
     """
 
-    help_notes = (LETTER_NOTES[:3],)
     help_title = "Two players"
     has_card = True
     escape_leaves = True
@@ -74,6 +77,12 @@ class SharedScreen(WatchScreen):
         """In a race those of the level, as soon as they are known."""
         self._ghost_paths: tuple[ScenePath, ...] = ()
         self._with_ghosts = True
+        self.ended = ""
+        """Why the game is over for this screen; empty while it goes on."""
+        self.has_left = False
+        """Whether this player has left a game that was not over."""
+        self._phase_of_keys: SharedPhase | None = None
+        """For which the keys at the bottom are."""
         self._race_s = 0.0
         """How long the race has taken so far [s]; at its end it stands still."""
 
@@ -103,6 +112,39 @@ class SharedScreen(WatchScreen):
         marks = ghost_marks(self.ghosts, self._race_s)
         return replace(scene, paths=(*self._ghost_paths, *scene.paths), marks=(*scene.marks, *marks))
 
+    @property
+    def help_notes(self) -> tuple[tuple[tuple[str, str], ...], ...]:
+        """The rule, and what is on the map."""
+        robots = (("on the map: 1  2", "the players' robots"),)
+        letters = LETTER_NOTES[1:3] if self._mode is SharedMode.RACE else ()
+        lines = wrap(RULES[self._mode], RULE_WIDTH)
+        rule = tuple((self._mode.value if line == lines[0] else "", line) for line in lines)
+        return rule, (*robots, *((("R", "the reference"), *letters) if letters else ()))
+
+    @property
+    def _unavailable_actions(self) -> tuple[str, ...]:
+        """Another game begins after one that is over, and only a race has ghosts."""
+        phase = None if self.state is None else self.state.phase
+        plays = self.player is not None and not self.ended
+        again = () if phase is SharedPhase.OVER and plays else ("restart",)
+        drives = () if plays else ("drive_keys", "stop_robot", "drive_mode")
+        return (*drives, *again, *(() if self._mode is SharedMode.RACE else ("ghosts",)))
+
+    def action_back(self) -> None:
+        """Asks first where a game would be lost by it."""
+        if self.player is not None and self.state is not None and self.state.phase is SharedPhase.RUNNING:
+            self.stop_driving()
+            self._ask_whether_to_leave()
+        else:
+            super().action_back()
+
+    @work(exclusive=True, group="leave")
+    async def _ask_whether_to_leave(self) -> None:
+        choices = [PickerItem("stay", "play on"), PickerItem("leave", "leave", "the other player wins")]
+        if await self.app.push_screen_wait(Picker("The game is not over", choices)) == "leave":
+            self.has_left = True
+            super().action_back()
+
     def action_ghosts(self) -> None:
         self._with_ghosts = not self._with_ghosts
         self._show()
@@ -117,6 +159,9 @@ class SharedScreen(WatchScreen):
         rows = shared_heading(self._level.title, self._mode, state, self.player, self.size.width)
         self._rows("heading").show([rows])
         self._rows("messages").show(shared_message(self._mode, state, self.player, self.join_command))
+        if state.phase is not self._phase_of_keys:
+            self._phase_of_keys = state.phase
+            self._show_keys()
 
 
 class SharedHostScreen(SharedScreen, inherit_bindings=False):
@@ -199,7 +244,7 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         file; None where there is none. Raises OSError."""
         if self._film is None or self._workspace is None:
             return None
-        file = self._workspace.folder / "films" / f"{self._level.id}.{self._mode.value}.npz"
+        file = self._workspace.recordings / f"{self._level.id}.{self._mode.value}.npz"
         file.parent.mkdir(exist_ok=True)
         save_recording(self._film, file)
         return file
@@ -264,8 +309,6 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
         self._shapes = _Shapes(self._scenario)
         self._announced_state = False
         self.player = GUEST_PLAYER if offer.plays else None
-        self.ended = ""
-        """Why the game is over for this screen; empty while it goes on."""
 
     def open_world(self) -> None:
         self._client.follow(self._state_arrived, lambda reason: self.post_message(SharedGameEnded(reason)))
@@ -284,6 +327,7 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
     def on_shared_game_ended(self, event: SharedGameEnded) -> None:
         self.ended = event.reason
         self.stop_driving()
+        self._show_keys()
         if self.state is None or self.state.phase is not SharedPhase.OVER:
             self.app.push_screen(MessageDialog("The game has ended", f"It ended: {event.reason}."))
         self._rows("messages").show([row((f" It ended: {event.reason}.", "warn"))])
@@ -311,10 +355,6 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
     def _newest_scene(self) -> Scene:
         assert self.state is not None  # nothing is offered before the first state
         return self._with_targets_and_ghosts(self._shapes.scene(self.state))
-
-    @property
-    def _unavailable_actions(self) -> tuple[str, ...]:
-        return () if self.player is not None else ("drive_keys", "stop_robot", "restart")
 
     def on_unmount(self) -> None:
         self._client.close()

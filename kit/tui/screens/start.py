@@ -154,6 +154,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
         driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"
+        if view.controller is None and self.driver_name:
+            driver = f"it drives {self.driver_name}"
         if view.failure is not None:
             driver = "no program drives"
         return at_both_edges(

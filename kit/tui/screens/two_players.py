@@ -29,12 +29,12 @@ from kit.world.problems import WorldError
 HOSTED: Final = {
     f"{mode.value} {whom}": (mode, Audience(everybody=whom == "all"))
     for mode in (SharedMode.TAG, SharedMode.RACE)
-    for whom in ("all", "own")
+    for whom in ("own", "all")
 }
 """The games that can be hosted, by the key of their line."""
 WHO_MAY_JOIN: Final = {
-    "all": "all users of this machine may join",
-    "own": "from another terminal of your own",
+    "all": "a new game, which anybody on this machine may join",
+    "own": "a new game, joined from another terminal of yours",
 }
 
 
@@ -45,8 +45,8 @@ async def play_together(app: App[Any], theme: Theme, level: GameLevel, workspace
         PickerItem(name, f"join {name}", f"of {user_name(game.owner)}") for name, game in games.items()
     ]
     for key, (mode, _) in HOSTED.items():
-        choices.append(PickerItem(key, f"host {mode.value}", WHO_MAY_JOIN[key.rpartition(" ")[2]]))
-    picked = await app.push_screen_wait(Picker(f"Two players; to host: {level.title}", choices))
+        choices.append(PickerItem(key, mode.value, WHO_MAY_JOIN[key.rpartition(" ")[2]]))
+    picked = await app.push_screen_wait(Picker(f"Two players on {level.title}", choices))
     try:
         if picked in games:
             client = await to_thread(SharedGameClient, games[picked], own_user_name(), plays=True)
@@ -62,4 +62,4 @@ async def play_together(app: App[Any], theme: Theme, level: GameLevel, workspace
 async def _host(app: App[Any], screen: SharedHostScreen) -> None:
     await app.push_screen_wait(screen)
     if (film := await to_thread(screen.save_film)) is not None:
-        app.push_screen(MessageDialog("The game is recorded", [row(f"To replay it: kit replay {film}")]))
+        app.push_screen(MessageDialog("The game is saved", [row(f"To replay it: kit replay {film}")]))

@@ -80,8 +80,6 @@ class WatchScreen(RowsScreen[None], DriveScreen):
 
     screen_actions: ClassVar[ScreenActions]
     help_title: ClassVar[str] = "Keys"
-    help_notes: ClassVar[tuple[tuple[tuple[str, str], ...], ...]] = ()
-    """Blocks of signs and terms below the keys on the help page."""
     key_labels: ClassVar[Mapping[str, str]] = MappingProxyType({})
     """Words of the line at the bottom that differ from the actions', by id."""
     shows_mode: ClassVar[bool] = True
@@ -436,6 +434,11 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         without = ("quit" if self._has_way_back else "back", *self._unavailable_actions)
         line = footer(self.screen_actions, self.size.width or 80, without=without, labels=self.key_labels)
         self._rows("keys").show([line])
+
+    @property
+    def help_notes(self) -> tuple[tuple[tuple[str, str], ...], ...]:
+        """Blocks of signs and terms below the keys on the help page."""
+        return ()
 
     @property
     def _unavailable_actions(self) -> tuple[str, ...]:

@@ -163,8 +163,10 @@ class TextRows(Widget):
 
     can_focus = False
 
-    def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 - Textual's own name
+    def __init__(self, *, id: str | None = None, opens: bool = True) -> None:  # noqa: A002 - Textual's own name
+        """``opens``: whether a click on what is drawn as chosen presses Enter."""
         super().__init__(id=id)
+        self._opens = opens
         self._rows: tuple[Row, ...] = ()
 
     def show(self, rows: Sequence[Row]) -> None:
@@ -193,7 +195,7 @@ class TextRows(Widget):
         if not 0 <= event.y < len(self._rows):
             return
         key = key_at(self._rows[event.y], event.x)
-        if key:
+        if key and (self._opens or key != "enter"):
             event.stop()
             self.app.post_message(events.Key(key, key if len(key) == 1 else None))
         else:

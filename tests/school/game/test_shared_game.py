@@ -464,6 +464,8 @@ def test_a_guest_plays_another_watches_and_both_are_told(server: Opened) -> None
     assert ("push", 1, -1.0, 0.0) not in rules.told  # who watches moves nobody
     wait_until(lambda: not opened.player_name)
     assert opened.publish(STATE).names == ("Ada", "Ben")  # who has left keeps the name
+    opened._player_name = "Ada"  # one user in two terminals
+    assert opened.publish(STATE).names == ("Ada 1", "Ada 2")
     with SharedGameClient(game, "Cleo", plays=True) as cleo:
         assert cleo.offer.plays  # the place is free again
 

@@ -10,6 +10,7 @@ from kit.render.palettes import COLOR_SCHEMES
 from kit.render.roles import Role
 from kit.school.lessons.glossary import read_glossary
 from kit.tui.app import KitApp
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.glossary import GlossaryScreen
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.lesson import LessonScreen
@@ -121,6 +122,19 @@ def test_it_does_what_a_key_of_the_screen_does(house: House) -> None:
         await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
         await pilot.press("ctrl+p", *"this page", "enter")
         await seen(pilot, "The start screen")
+
+    house.play(scene)
+
+
+def test_over_a_message_it_opens_for_the_screen_below(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        below = pilot.app.screen
+        pilot.app.push_screen(MessageDialog("That did not work", "For a reason."))
+        await seen(pilot, "For a reason")
+        await pilot.press("ctrl+p", *"this page", "enter")
+        await seen(pilot, "The start screen")
+        assert pilot.app.screen_stack[-2] is below
 
     house.play(scene)
 

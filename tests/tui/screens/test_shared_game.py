@@ -20,7 +20,7 @@ from kit.school.game.shared_sockets import Audience, find_game
 from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase, shared_scenario
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen, SharedScreen
 from kit.workspace import Workspace
-from tests.tui.lesson_stage import stage, until
+from tests.tui.lesson_stage import seen, stage, text, until
 
 LEVEL = find_level("first-drive")
 
@@ -103,6 +103,38 @@ def test_tag_has_no_ghosts(workspace: Workspace) -> None:
         await pilot.app.workers.wait_for_complete()
         assert not screen.ghosts
         assert not marks(screen)
+
+    stage(lambda theme: SharedGuestScreen(theme, client, workspace), scene)  # type: ignore[arg-type]  # all it uses
+
+
+@pytest.mark.long
+def test_who_leaves_a_game_that_is_not_over_is_asked_and_keys_are_told_when_they_work(
+    workspace: Workspace,
+) -> None:
+    client = FakeClient(SharedMode.TAG)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, SharedGuestScreen)
+        client.say(state(SharedPhase.OVER, 9.0))
+        await seen(pilot, "r restart")
+        client.say(state(SharedPhase.RUNNING, 1.0))
+        await seen(pilot, "Esc back")
+        await until(pilot, lambda: "r restart" not in text(pilot), "keys of a game that runs")
+        await pilot.press("question_mark")
+        await seen(pilot, "penalty")
+        assert "your best so far" not in text(pilot)
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is screen, "the game")
+        await pilot.press("escape")
+        await seen(pilot, "The game is not over")
+        await pilot.press("enter")
+        await until(pilot, lambda: pilot.app.screen is screen, "the game")
+        assert not screen.has_left
+        await pilot.press("escape")
+        await seen(pilot, "The game is not over")
+        await pilot.press("down", "enter")
+        await until(pilot, lambda: screen.has_left, "the end")
 
     stage(lambda theme: SharedGuestScreen(theme, client, workspace), scene)  # type: ignore[arg-type]  # all it uses
 

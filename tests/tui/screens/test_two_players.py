@@ -48,7 +48,7 @@ def test_a_game_is_hosted_until_its_screen_is_left(tmp_path: Path, games: Path) 
     workspace = prepare_workspace(tmp_path / "home")
 
     async def scene(pilot: Pilot[None]) -> None:
-        await choose(pilot, "host race")
+        await choose(pilot, "race")
         await until(pilot, lambda: isinstance(pilot.app.screen, SharedHostScreen), "the game")
         await until(pilot, lambda: answering_games(games), "a game that can be found")
         assert find_game(games, "first-drive")
@@ -57,11 +57,11 @@ def test_a_game_is_hosted_until_its_screen_is_left(tmp_path: Path, games: Path) 
         screen._film = reference_recording(find_level("first-drive"))  # as if it had been played
         await seen(pilot, "Esc back")
         await pilot.press("escape")
-        await seen(pilot, "The game is recorded")
+        await seen(pilot, "The game is saved")
         assert answering_games(games) == []
 
     on_the_levels(workspace, scene)
-    (film,) = (workspace.folder / "films").iterdir()
+    (film,) = (workspace.recordings).iterdir()
     assert load_recording(film).ticks
 
 

@@ -251,7 +251,7 @@ def tag_match(job: LeagueJob, game: JudgedJob) -> Match:
         by = "the other's program failed"
     remarks = (*game.remarks, "", "")
     details = [
-        remark or f"{seconds:.1f} s against it" for remark, seconds in zip(remarks, game.scores, strict=False)
+        remark or f"{seconds:.1f} s penalty" for remark, seconds in zip(remarks, game.scores, strict=False)
     ]
     entrants = job.entrants[0], job.entrants[1]
     told = "" if points == DRAW else by

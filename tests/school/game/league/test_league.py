@@ -822,7 +822,7 @@ def test_a_program_that_reaches_out_of_its_namespace_has_lost(tmp_path: Path, li
     (match,) = read_standings(league).matches
     assert match.winner == honest
     assert "not its own" in match.details[0]
-    assert match.details[1].endswith("s against it")
+    assert match.details[1].endswith("s penalty")
 
 
 @pytest.mark.long
