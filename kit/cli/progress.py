@@ -102,7 +102,7 @@ def _print_progress(journal: ProgressJournal) -> None:
         Text(f"{counted(sum(each.is_earned for each in won), 'badge')}. {days.describe()}"),
     ]
     if any(each.done for each in won):
-        blocks.append(badge_table(won))
+        blocks.append(badge_table([each for each in won if each.done]))
     blocks.append(Text("The game"))
     click.echo("\n".join([*lines_of(blocks), *map(row_text, game_progress(game_summary(events)))]))
 

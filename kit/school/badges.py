@@ -105,20 +105,20 @@ def badges(
     )
 
 
-def badge_table(earned: Sequence[Badge]) -> Table:
-    """The badges that are earned first, then those that are begun."""
+def badge_table(shown: Sequence[Badge]) -> Table:
+    """The badges that are earned first, then those that are begun, then the others."""
     columns = (
         Column("", CellStyle.TEXT),
         Column("badge", CellStyle.TEXT),
         Column("for", CellStyle.TEXT),
         Column("so far"),
     )
-    shown = sorted((each for each in earned if each.done), key=lambda each: not each.is_earned)
+    ordered = sorted(shown, key=lambda each: (not each.is_earned, not each.done))
 
     def cells(each: Badge) -> tuple[Cell, ...]:
         return "*" if each.is_earned else "", each.title, each.how, f"{each.done} of {each.needed}"
 
-    return Table("badges", "", columns, tuple(map(cells, shown)), is_ruled=False)
+    return Table("badges", "", columns, tuple(map(cells, ordered)), is_ruled=False)
 
 
 def _make_badge(title: str, how: str, done: int, needed: int) -> Badge:

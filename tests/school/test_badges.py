@@ -102,7 +102,7 @@ def test_predictions_that_came_true() -> None:
 
 def test_what_is_earned_stands_first() -> None:
     table = badge_table([Badge("Begun", "a", 1, 2), Badge("Not yet", "b", 0, 2), Badge("Earned", "c", 2, 2)])
-    assert [row[1] for row in table.rows] == ["Earned", "Begun"]
+    assert [row[1] for row in table.rows] == ["Earned", "Begun", "Not yet"]
 
 
 def test_kit_progress_shows_them(tmp_path: Path) -> None:

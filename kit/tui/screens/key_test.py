@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import ClassVar, Final
@@ -16,7 +17,7 @@ from textual.containers import Container
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.rows import MARGIN, Row, at_both_edges, broken, fitted, row, side_by_side
-from kit.tui.input.drive import DriveState
+from kit.tui.input.drive import MODE_TEXTS, DriveState
 from kit.tui.input.drive_keys import DRIVE_KEYS, DriveKey
 from kit.tui.input.modes import Clock, KeyEventKind
 from kit.tui.input.screen import DriveScreen
@@ -34,6 +35,8 @@ NAME: Final = 13
 MODE_ROWS: Final = 2
 LEAST_LOG: Final = 5
 """Rows of what arrived, with its title and the empty one before it."""
+ROOMY_LOG: Final = 12
+"""Rows of it that are kept free where more is told of the terminal."""
 KEPT: Final = 50
 """Lines of what arrived: more than any screen shows."""
 WORDS: Final = MappingProxyType(
@@ -196,11 +199,32 @@ class KeyTestScreen(RowsScreen[None], DriveScreen):
             row((f" {word:<9}", WORDS[kind][1]), text)
             for (word, text), kind in zip(MEANINGS, WORDS, strict=True)
         ]
-        meant = [
-            ruled_title("what may arrive", width),
-            *(each for parts in told for each in broken(parts, width)),
-        ]
+        meant = _part("what may arrive", told, width)
         arrived = [ruled_title("what arrived", width, "newest first"), *(each.row() for each in self._log)]
-        if len(meant) + LEAST_LOG <= height:
-            return [*meant, row(), *arrived]
-        return arrived if self._log else meant
+        if len(meant) + LEAST_LOG > height:
+            return arrived if self._log else meant
+        for title, told in (("how keys drive", self._modes()), ("on the way here", self._facts())):
+            more = [row(), *_part(title, told, width)]
+            meant += more if told and len(meant) + len(more) + ROOMY_LOG <= height else []
+        return [*meant, row(), *arrived]
+
+    def _modes(self) -> list[Row]:
+        """All modes; the one that is used now is marked."""
+        chosen = self.drive.choice.mode
+        return [
+            row((f"{'>' if mode == chosen else ' '}{mode:<9}", "bold" if mode == chosen else "dim"), text)
+            for mode, text in MODE_TEXTS.items()
+        ]
+
+    def _facts(self) -> list[Row]:
+        """What lies between the keyboard and the kit, as far as it is known."""
+        terminal = self._terminal
+        if terminal is None:
+            return []
+        found = (("link", terminal.remote.reason), ("between", terminal.between.reason))
+        return [row((f" {name:<9}", "dim"), reason) for name, reason in found]
+
+
+def _part(title: str, told: Sequence[Row], width: int) -> list[Row]:
+    """Rows below their title, each on as many as it needs."""
+    return [ruled_title(title, width), *(each for parts in told for each in broken(parts, width))]

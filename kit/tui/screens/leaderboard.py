@@ -23,6 +23,8 @@ from kit.school.game.levels import all_levels
 from kit.school.game.medal import RUNGS
 from kit.school.game.medal_in_reach import medals_in_reach
 from kit.school.game.player_progress import LevelProgress, level_progress
+from kit.school.game.race import DriverKind
+from kit.school.game.references import reference_seconds
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.leaderboard_rows import (
@@ -31,6 +33,7 @@ from kit.tui.rows.leaderboard_rows import (
     times_to_beat,
     todays_times,
 )
+from kit.tui.rows.level_card_rows import Company, level_card
 from kit.tui.rows.progress_rows import reach_table
 from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import MessageDialog
@@ -44,6 +47,8 @@ from kit.world.problems import WorldError
 WIDE: Final = 150
 """Columns from which today's level stands beside the times."""
 MAP_ROWS: Final = 24
+ROWS_AROUND: Final = 4
+"""Of the screen: the heading, an empty row below it and one above the keys, and these."""
 MOST_IN_REACH: Final = 8
 """Medals that are named."""
 
@@ -119,19 +124,23 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
     def _beside(
         self, entries: Sequence[leaderboard.LeaderboardEntry], own: Sequence[LevelProgress]
     ) -> list[Row]:
-        """Today's level with its board, and the player's next medals."""
+        """Today's level with its board and what it asks for, and the player's next medals."""
         level = daily_level(today())
         columns, glyphs = self._today_columns - MARGIN, self._theme.terminal.glyphs.value
         times = _rows_of(todays_times(entries), columns)
         nearest = _rows_of(reach_table(medals_in_reach(own)[:MOST_IN_REACH]), columns)
-        return [
+        rows = [
             ruled_title("today's level", columns, level.title),
             *map(row, picture_of(level, columns, MAP_ROWS, glyphs)),
             row(),
             *(times or [row(("Nobody on the board has driven it yet.", "dim"))]),
             row(),
-            *([ruled_title("your nearest medals", columns), *nearest] if nearest else []),
         ]
+        reach = [ruled_title("your nearest medals", columns), *nearest] if nearest else []
+        room = self.size.height - ROWS_AROUND - len(rows) - len(reach) - 1
+        card = level_card(level, DriverKind.KEYS, reference_seconds(level), (), columns, room, Company())
+        asked = [each for part in card.values() for each in part]
+        return [*rows, *asked, *([row()] if asked and reach else []), *reach]
 
     def _own_progress(self) -> tuple[LevelProgress, ...]:
         try:

@@ -12,7 +12,7 @@ from textual.screen import Screen
 
 from kit.document.blocks import Block, Text
 from kit.document.rows import Row, row
-from kit.school.badges import Streak, badge_table, badges, learning_days, streak
+from kit.school.badges import Badge, Streak, badge_table, badges, learning_days, streak
 from kit.school.game.medal_in_reach import MedalInReach, medals_in_reach
 from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.reading import read_units
@@ -35,6 +35,8 @@ from kit.world.problems import WorldError
 
 MOST_IN_REACH: Final = 5
 """Medals that are named."""
+HIGH: Final = 45
+"""Rows of a screen from which on badges are listed that are not yet begun."""
 
 
 NO_STREAK: Final = Streak(0, 0)
@@ -53,7 +55,7 @@ class ProgressSummary:
     days: Mapping[date, int] = field(default_factory=dict)
     """How much was learned on each day on which anything was."""
     streak: Streak = NO_STREAK
-    badges: Sequence[Block] = ()
+    badges: Sequence[Badge] = ()
     quiz: Sequence[Block] = (Text("Nothing answered yet."),)
 
 
@@ -75,8 +77,9 @@ class ProgressScreen(SectionsScreen):
             days = [row(f"  {told.streak.describe()}"), row(), *calendar_rows(told.days, told.today, columns)]
             parts.append(section("days", days, columns))
         parts.append(section_of("quiz", told.quiz, columns))
-        if told.badges:
-            parts.append(section_of("badges", told.badges, columns))
+        is_high = self.size.height >= HIGH
+        if shown := [each for each in told.badges if each.done or is_high]:
+            parts.append(section_of("badges", [badge_table(shown)], columns))
         parts.append(section("export your progress", export_rows(told.workspace), columns))
         counts = section("done so far", lesson_counts(told.shelf), columns)
         return [
@@ -113,7 +116,7 @@ def _read(store: StudentStore) -> ProgressSummary | str:
         in_reach,
         days,
         in_a_row,
-        [badge_table(won)] if any(each.done for each in won) else (),
+        won,
         _quiz(events),
     )
 

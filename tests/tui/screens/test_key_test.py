@@ -123,6 +123,21 @@ def test_a_large_terminal_is_used() -> None:
     play(scene, (200, 50))
 
 
+@pytest.mark.parametrize("size", [(80, 24), (120, 35)], ids=str)
+def test_what_is_known_of_the_terminal_stands_above_what_arrived_where_there_is_room(
+    size: tuple[int, int],
+) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("z", "w")
+        await pilot.pause()
+        lines = rows(pilot.app)
+        assert any("press    up" in line or "press    w" in line for line in lines)
+        assert any("There is no sign of tmux" in line for line in lines) is (size[0] == 120)
+        assert any(">latch" in line for line in lines) is (size[0] == 120), "the mode that is used"
+
+    stage(lambda theme: KeyTestScreen(theme.terminal), scene, size=size)
+
+
 @pytest.mark.long
 def test_a_terminal_that_has_only_ascii_is_shown_nothing_else() -> None:
     async def scene(pilot: Pilot[None]) -> None:

@@ -516,6 +516,18 @@ def test_a_puzzle_is_pictured_beside_the_list_of_all(
     play(scene, progress, tmp_path / "desk", (width, 40))
 
 
+def test_a_large_leaderboard_tells_what_todays_level_asks_for(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("f")
+        level = daily_level(today())
+        await wait_until_shown(pilot, lambda: level.hint in flat(pilot.app))
+        assert all(each.description(level) in flat(pilot.app) for each in offered_rules(level))
+
+    play(scene, progress, tmp_path / "desk", (200, 50))
+
+
 def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, tmp_path: Path) -> None:
     forged = {"driver": "keys", "reached": True, "seconds": 1.5, "bumps": 0, "medal": 5}
     progress.add(EventKind.FINISH, LEVELS[1].id, forged)  # nothing was driven

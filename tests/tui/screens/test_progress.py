@@ -10,6 +10,7 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.document.rows import row_text
+from kit.school.badges import Badge
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.rows.progress_rows import BUSY, STARS_LEGEND, calendar_rows
 from kit.tui.screens.progress import ProgressScreen, ProgressSummary
@@ -59,6 +60,17 @@ def test_a_lesson_that_was_begun_names_its_exercises_where_lessons_stand_below(t
         await seen(pilot, f"{first.lesson.exercises[0].name} ...")
 
     stage(lambda theme: ProgressScreen(ProgressSummary(shelf, "home", MONDAY)), scene, size=(80, 24))
+
+
+@pytest.mark.parametrize("size", [(200, 50), (200, 40)], ids=str)
+def test_a_high_screen_names_the_badges_that_are_not_yet_begun(size: tuple[int, int]) -> None:
+    told = ProgressSummary((), "home", MONDAY, badges=(Badge("Foresight", "predictions", 0, 10),))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, STARS_LEGEND[0])
+        assert ("0 of 10" in text(pilot)) is (size[1] == 50)
+
+    stage(lambda theme: ProgressScreen(told), scene, size=size)
 
 
 def test_the_calendar_ends_today_and_shows_how_busy_each_day_was() -> None:
