@@ -25,6 +25,8 @@ PARTS: Final = ("story", "task", "skill", "ladder", "stars", "rivals", "sectors"
 """Parts of a card, from top to bottom."""
 BY_WORTH: Final = ("story", "ladder", "task", "stars", "skill", "rivals", "sectors")
 """The part that is left out last before the others."""
+NARROW_BY_WORTH: Final = ("task", "ladder", "story", "stars", "skill", "rivals", "sectors")
+"""The same in a narrow panel, where a story takes the rows of all else: it stood beside the list of levels."""
 LEAST_WIDTH: Final = 16
 """Columns of a card."""
 WIDE: Final = 46
@@ -73,7 +75,8 @@ def level_card(
     )
     parts = {name: part for name, part in zip(PARTS, rows, strict=True) if part}
     shown: set[str] = set()
-    for name in filter(parts.__contains__, BY_WORTH):
+    worth = BY_WORTH if width >= WIDE else NARROW_BY_WORTH
+    for name in filter(parts.__contains__, worth):
         if sum(len(parts[each]) for each in (*shown, name)) <= room:
             shown.add(name)
     return {name: part for name, part in parts.items() if name in shown}

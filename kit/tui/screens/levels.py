@@ -330,7 +330,9 @@ class LevelsScreen(RowsScreen[None]):
         if self.size.width >= ABOUT_COLUMN + COLUMN:
             return []
         rows = self._card_rows(width - 1)
-        if rows and len(rows) <= room and room > len(ExtraRule):
+        levels = self._in_world(self.chosen.level.world)
+        shares = not map_places(levels, width, room - 2) or map_places(levels, width, room - len(rows) - 1)
+        if rows and len(rows) <= room and room > len(ExtraRule) and shares:
             return [*rows, row()]
         stars = star_line(self.chosen.level, self.chosen.rules)
         return [stars, row()][:room] if rows and room > 0 and row_width(stars) <= width else []
@@ -418,18 +420,23 @@ class LevelsScreen(RowsScreen[None]):
             return
         level = self.chosen.level
         self._draw_pictures()
+        if self.has_class("-wide"):
+            if level.id not in self._scenes:
+                self._preview.clear()  # another level's map says nothing of this one
+                self._scenes[level.id] = await to_thread(scene_of, level)
+            self._preview.show(self._scene_with_ghosts(level))
         if level.id not in self._known and self.chosen.is_open:
             await self._prepare_ghosts(level)
             self._show()
-        if self.has_class("-wide"):
-            if level.id not in self._scenes:
-                self._scenes[level.id] = await to_thread(scene_of, level)
-            paths = (
-                ()
-                if level.conditions.fog
-                else tuple(path for ghost in self._known.get(level.id, ()) for path in ghost_paths(ghost))
-            )
-            self._preview.show(replace(self._scenes[level.id], paths=paths))
+            if self.has_class("-wide"):
+                self._preview.show(self._scene_with_ghosts(level))
+
+    def _scene_with_ghosts(self, level: GameLevel) -> Scene:
+        """The level's map with the ways of the ghosts that are known; in fog without."""
+        ghosts = () if level.conditions.fog else self._known.get(level.id, ())
+        return replace(
+            self._scenes[level.id], paths=tuple(path for ghost in ghosts for path in ghost_paths(ghost))
+        )
 
     async def _prepare_ghosts(self, level: GameLevel) -> None:
         """Makes the ghosts of a level known; who asks while they are being prepared waits for the same."""
