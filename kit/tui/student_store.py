@@ -40,7 +40,7 @@ class StudentOverview:
     running: tuple[str, ...] = ()
     """Names of the trainings that run."""
     news: str = ""
-    """What is new on the start screen, at the first visit."""
+    """What is new on the start screen, where it was read for the first time."""
     problem: str = ""
     """Why progress, or lessons, cannot be read."""
     is_whole: bool = True
@@ -59,7 +59,6 @@ class StudentStore:
         self._lessons = lessons
         self._progress: ProgressJournal | None = None
         self._opening = threading.Lock()
-        self._news = ""
 
     def progress(self) -> ProgressJournal:
         """The journal, opened when it is first asked for. Raises ProgressError."""
@@ -83,6 +82,7 @@ class StudentStore:
         """Reads everything. Slow: to be called in another thread. ``on_lessons``: is told where to go on as soon as that is
         known, a third of the way."""
         from kit.school.lessons.catalogue import list_lessons, next_lesson
+        from kit.school.news import take_news
         from kit.school.progress import ProgressError
 
         try:
@@ -107,7 +107,7 @@ class StudentStore:
             next_level,
             won,
             self._running(),
-            self._take_news(),
+            take_news(self.progress(), "start"),
         )
 
     def open_lesson(self, lesson: Lesson) -> LessonSession:
@@ -145,13 +145,6 @@ class StudentStore:
         is_next = (each.level for each in summary.levels if each.is_open and each.best_medal is Medal.NONE)
         medals = [each.describe() for each in medals_in_reach(summary.levels)]
         return next(iter(medals), ""), next(is_next, None), won
-
-    def _take_news(self) -> str:
-        """Taken once; what was taken stands for as long as the store is open."""
-        from kit.school.news import take_news
-
-        self._news = take_news(self.progress(), "start") or self._news
-        return self._news
 
     def _running(self) -> tuple[str, ...]:
         from kit.learning.training.run_folders import list_runs

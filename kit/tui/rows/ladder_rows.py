@@ -42,6 +42,16 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
     return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
 
 
+def ladder_letters() -> Row:
+    """What the letters of a ladder mean.
+
+    >>> from kit.document.rows import row_text
+    >>> row_text(ladder_letters())
+    ' ladder  B bronze  S silver  G gold  M master  R record'
+    """
+    return row((" ladder  " + "  ".join(f"{MEDAL_SIGNS[each]} {each.title}" for each in RUNGS), "dim"))
+
+
 def ladder_words(driver: DriverKind, reference: float, seconds: float | None) -> str:
     """A time and what the next rung asks for."""
     rung = next_rung(driver, reference, seconds)

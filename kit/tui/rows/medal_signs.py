@@ -18,7 +18,7 @@ MEDAL_SIGNS: Final = {
 }
 MEDAL_STYLES: Final = {
     Medal.NONE: "dim",
-    Medal.BRONZE: "bronze",
+    Medal.BRONZE: "",
     Medal.SILVER: "bold",
     Medal.GOLD: "warn",
     Medal.MASTER: "good",

@@ -27,6 +27,7 @@ from kit.run.view import View
 from kit.school.game.daily import DAILY_PREFIX, has_run
 from kit.school.game.drive_records import DriveRecord, begin_run, record_drive
 from kit.school.game.ghosts import (
+    REFERENCE,
     Ghost,
     GhostComparison,
     compare_tracks,
@@ -55,7 +56,7 @@ from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.level_card_rows import Company, Rival, best_splits, level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.level_pictures import ghost_driver, ghost_look, ghost_marks, ghost_paths
+from kit.tui.screens.level_pictures import GHOST_LOOKS, ghost_driver, ghost_look, ghost_marks, ghost_paths
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish, edit_program
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
@@ -67,8 +68,9 @@ if TYPE_CHECKING:
 
 ONE, TWO = "teleop", "teleop_pair"
 EDITS: Final = "e edits it."
+PACE: Final = GHOST_LOOKS[REFERENCE][0]
 LETTER_NOTES: Final = (
-    ("on the map: R", "the reference"),
+    (f"on the map: {PACE}", "the reference, which sets the pace"),
     ("K  C  A", "your best so far by hand, by program, by agent"),
     ("other letters", "classmates who have joined the leaderboard"),
     ("D", "a dock: stand still for a second to charge"),
@@ -401,7 +403,7 @@ class LevelDrive(WatchScreen):
             if row_width(row(*left, *right)) + len(reach) + 4 <= width:
                 left.append((f"  {reach}", "dim"))
         if self._behind is not None:
-            behind = row((f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), " to R  ")
+            behind = row((f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), f" to {PACE}  ")
             if row_width(row(*left, *behind, *right)) + 2 <= width:
                 right = [*behind, *right]
         return at_both_edges(row(*left), row(*right), width)

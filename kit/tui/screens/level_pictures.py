@@ -31,12 +31,13 @@ TARGET_SIGNS: Final = {False: UNICODE_GLYPHS.target, True: ASCII_GLYPHS.target}
 WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
 GHOST_LOOKS: Final = {
-    REFERENCE: ("R", Role.GHOST_REFERENCE),
+    REFERENCE: ("P", Role.GHOST_REFERENCE),
     DriverKind.KEYS.value: ("K", Role.GHOST_KEYS),
     DriverKind.CONTROLLER.value: ("C", Role.GHOST_PROGRAM),
     DriverKind.AGENT.value: ("A", Role.GHOST_AGENT),
 }
-"""The letter and the role of each ghost; a classmate has the first letter of the name."""
+"""The letter and the role of each ghost: the reference sets the pace, R is a record; a classmate has the first letter of the
+name."""
 
 
 def ghost_look(ghost: Ghost) -> tuple[str, Role]:

@@ -45,6 +45,7 @@ from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.ladder_rows import ladder_letters
 from kit.tui.rows.level_card_rows import COLUMN, best_splits, star_line, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.rows.progress_marks import share_bar
@@ -301,7 +302,7 @@ class LevelsScreen(RowsScreen[None]):
             names,
             *listed[top : top + room],
             *(
-                [row()] if len(card) <= self._rows_below_levels else []
+                [ladder_letters()] if len(card) <= self._rows_below_levels else []
             ),  # else its rule parts it from the list
             *card,
             *map_rows(levels, self._map_places(), self._pictures, level.id),

@@ -48,6 +48,8 @@ if TYPE_CHECKING:
 
 
 DRIVING_LETTERS = ("w", "a", "s", "d")
+NEWS_S: Final = 30.0
+"""For so long it is told what is new [s]."""
 VAST: Final = 190
 """Columns from which on the robot's picture leaves room for a wide panel."""
 WITH_VAST: Final = [*BREAKPOINTS, (VAST, "-vast")]
@@ -108,6 +110,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._told: tuple[StudentOverview | None, int, int, int, tuple[str, ...]] | None = None
         """What the menu tells, as it is shown."""
         self._is_reading = self._is_away = False
+        self._news = ""
+        self._is_news_shown = False
 
     def on_mount(self) -> None:
         self._show_menu()
@@ -148,9 +152,16 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._rows("messages").show(self.message_rows(view) or self._news_rows())
 
     def _news_rows(self) -> list[Row]:
-        """What is new, until something is opened."""
-        news = "" if self._overview is None else self._overview.news
-        return [row((f" {news}", "good"))] if news else []
+        """What is new, until it was in sight for a while or something is opened after it was seen."""
+        if self._news and not self._is_news_shown:
+            self._is_news_shown = True
+            self.set_timer(NEWS_S, self._forget_news)
+        return [row((f" {self._news}", "good"))] if self._news else []
+
+    def _forget_news(self) -> None:
+        if self._is_news_shown:
+            self._news = ""
+            self._show()
 
     def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
         driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"
@@ -197,6 +208,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         loop, tell_lessons = get_running_loop(), called_in_loop(self._show_lessons)
         overview = await loop.run_in_executor(self._reading, self._store.read_overview, tell_lessons)
         self._overview, self._is_outdated = overview, False
+        self._news = overview.news or self._news
         if overview.next_level is not None and self.has_class("-vast"):
             self._level_picture = await loop.run_in_executor(
                 self._reading, _picture_of, overview.next_level, self._theme.terminal.glyphs.value
@@ -351,6 +363,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     def _close_own_world(self) -> None:
         self.stop_driving()
         self._is_away = self._is_outdated = True
+        self._forget_news()
         self._show_notice(None)
         self.host.close_session()  # one world at a time
 

@@ -29,7 +29,6 @@ STYLES: Final = {
     "good": Style(color="green", bold=True),
     "warn": Style(color="yellow", bold=True),
     "bad": Style(color="red", bold=True),
-    "bronze": Style(color="yellow", dim=True),
 }
 """The few ways a text can look. Each bold, dim or reversed, so that none means anything by its colour alone."""
 

@@ -37,7 +37,7 @@ def flat(card: dict[str, list[Row]]) -> list[Row]:
 @pytest.mark.parametrize("width", [21, 40, 58])
 def test_a_card_keeps_to_its_width_and_its_room(level: GameLevel, width: int) -> None:
     reference = reference_seconds(level)
-    company = Company((Rival("R", "the reference", reference or 0.0), Rival("m", "mo", 12.5)))
+    company = Company((Rival("P", "the reference", reference or 0.0), Rival("m", "mo", 12.5)))
     whole = flat(level_card(level, DriverKind.KEYS, reference, (), width, 1000, company))
     assert all(row_width(each) <= width for each in whole)
     text = " ".join(row_text(each) for each in whole)

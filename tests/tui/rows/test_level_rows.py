@@ -20,6 +20,8 @@ from kit.tui.rows.level_rows import (
     world_heading,
     world_levels,
 )
+from kit.tui.rows.medal_signs import MEDAL_SIGNS
+from kit.tui.screens.level_pictures import GHOST_LOOKS
 from kit.tui.widgets.text_rows import _ASCII
 from tests.kit_content import kit_levels
 from tests.tui.lesson_stage import row_text
@@ -80,7 +82,7 @@ def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
             )
             assert [row_text(row) for row in rows if len(row_text(row)) > 80] == []
         names = [
-            "the reference (R) 6.0 s",
+            "the reference (P) 6.0 s",
             *(f"a classmate's long name {number} (c) 9.9 s" for number in range(3)),
         ]
         for ghosts, task_in_sight in product(([], names), (True, False)):
@@ -128,3 +130,8 @@ def test_where_a_program_did_not_arrive_is_no_time() -> None:
     (shown,) = map(row_text, starts_rows([reached, lost, lost, lost, reached], 1))
     assert shown.split() == ["5", "starts", "6.00", "s", "[-]", "-", "-", "6.00", "s"]
     assert row_text(starts_rows([lost] * 5, 0)[0]).split()[2:] == ["[-]", "-", "-", "-", "-"]
+
+
+def test_a_letter_is_either_a_medal_or_a_ghost() -> None:
+    ghosts = {letter for letter, _ in GHOST_LOOKS.values()}
+    assert not ghosts & {sign for medal, sign in MEDAL_SIGNS.items() if medal is not Medal.NONE}

@@ -51,7 +51,7 @@ def test_the_way_through_a_days_maze_is_drawn_after_the_first_run(tmp_path: Path
         await until(pilot, lambda: screen.view is not None, "the world")
         shown = screen._newest_scene()
         assert bool(shown.paths) is has_run
-        assert [each.label for each in shown.marks] == ["R"]
+        assert [each.label for each in shown.marks] == ["P"]
 
     with ProgressJournal(workspace.folder) as journal:
         if has_run:

@@ -80,8 +80,8 @@ def test_a_guest_sees_its_own_ghosts_at_the_time_of_the_race(workspace: Workspac
         ):
             client.say(state(phase, seconds))
             found = marks(screen)
-            assert found.keys() == {"K", "R"}
-            assert found["R"] == found["K"] == pytest.approx(reference.poses_at(wanted)[0][:2])
+            assert found.keys() == {"K", "P"}
+            assert found["P"] == found["K"] == pytest.approx(reference.poses_at(wanted)[0][:2])
         assert screen._newest_scene().paths
         await pilot.press("o")
         assert not marks(screen)
@@ -150,10 +150,10 @@ def test_the_hosts_ghosts_wait_for_the_start_and_drive_with_the_race(
         assert isinstance(screen, SharedHostScreen)
         await until(pilot, lambda: screen.view is not None and screen.ghosts and screen.state, "the world")
         start = marks(screen)
-        assert start.keys() == {"K", "R"}
+        assert start.keys() == {"K", "P"}
         with SharedGameClient(find_game(folder, None), "Ben", plays=True):
             await until(pilot, lambda: _is_running(screen), "the race")
-            await until(pilot, lambda: marks(screen)["R"] != start["R"], "the reference to drive")
+            await until(pilot, lambda: marks(screen)["P"] != start["P"], "the reference to drive")
 
     stage(
         lambda theme: SharedHostScreen(theme, LEVEL, SharedMode.RACE, "Ada", folder, Audience(), workspace),

@@ -377,3 +377,32 @@ def test_the_kit_may_be_left_while_the_rest_is_read(house: House, monkeypatch: p
         await until(pilot, lambda: start._overview is not None and start._overview.is_whole, "the rest")
 
     house.play(scene)
+
+
+def test_what_is_new_goes_once_it_was_seen_and_never_comes_back(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "New: ")
+        screen = pilot.app.screen
+        assert isinstance(screen, StartScreen)
+        screen._forget_news()  # as the clock does after a while
+        await until(pilot, lambda: "New: " not in text(pilot), "it goes")
+        await screen._refresh_overview()
+        await pilot.pause()
+        assert "New: " not in text(pilot)
+
+    house.play(scene)
+
+
+@pytest.mark.long
+def test_what_is_new_is_gone_on_coming_back(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "New: ")
+        await pilot.press("enter")
+        await seen(pilot, "waiting for your prediction")
+        await pilot.press("escape")
+        await until(pilot, lambda: isinstance(pilot.app.screen, StartScreen), "the menu")
+        await pilot.app.screen._refresh_overview()  # type: ignore[attr-defined]
+        await pilot.pause()
+        assert "New: " not in text(pilot)
+
+    house.play(scene, (120, 40))
