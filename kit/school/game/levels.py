@@ -135,9 +135,11 @@ class GameLevel:
     case: str
     hint: str
     opened_by: tuple[str, ...]
-    """Ids of levels; finishing any of them opens this one. Empty: it is open from the start."""
+    """Ids of levels; finishing any of them opens this one."""
     row: int
     """The smallest number of levels before it."""
+    is_open_at_first: bool = True
+    """Whether it is open from the start: nothing opens it, or it is the first of its world."""
     world: str = ""
     """Id of its world."""
     story: str = ""
@@ -262,6 +264,7 @@ def _read_worlds(section: Section) -> Iterator[GameWorld]:
 
 def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[GameLevel]:
     rows: dict[str, int] = {}
+    begun: set[str] = set()
     for each in section.sections("levels", at_least=1):
         identity = each.name("id")
         after = each.texts("after", ())
@@ -276,6 +279,8 @@ def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[
             each.error(f"a level {quoted(identity)} exists already", "id")
         rows[identity] = row
         level = _read_level(each, identity, after, row)
+        level = replace(level, is_open_at_first=not after or level.world not in begun)
+        begun.add(level.world)
         if level.world not in worlds:
             each.error(
                 f"there is no world {quoted(level.world)}: {suggestion(level.world, tuple(worlds))}", "world"

@@ -213,7 +213,7 @@ def level_progress(
         _progress_of_level(
             level,
             drives[level.id],
-            not level.opened_by
+            level.is_open_at_first
             or level.opened_by_lesson in lessons
             or any(each in reached for each in level.opened_by),
         )

@@ -88,12 +88,17 @@ def world_levels(
     for each in standings:
         level, is_chosen = each.level, each.level.id == chosen
         style = "chosen" if is_chosen else "" if each.is_open else "dim"
+        title = (
+            ("> " if is_chosen else "  ", "bold"),
+            (f"{level.title:<{title_width}.{title_width}} ", style),
+        )
+        if not each.is_open:
+            rows.append(row(*title, (opens_after(level) if is_whole else "locked", "dim")))
+            continue
         medals: list[str | tuple[str, str]] = []
         for driver, width in zip(DriverKind, MEDAL_WIDTHS, strict=True):
             medal = each.medals.get(driver, Medal.NONE)
             medals.append((f"{MEDAL_SIGNS[medal]:<{width}}", MEDAL_STYLES[medal]))
-        if not each.is_open:
-            medals = [(f"{'locked':<{sum(MEDAL_WIDTHS)}}", "dim")]
         best = min(each.best_times.values(), default=None)
         reference = references.get(level.id)
         driver = max(DriverKind, key=lambda kind: (each.medals.get(kind, -1), kind in each.best_times))
@@ -104,12 +109,11 @@ def world_levels(
         )
         rows.append(
             row(
-                ("> " if is_chosen else "  ", "bold"),
-                (f"{level.title:<{title_width}.{title_width}} ", style),
+                *title,
                 *medals,
                 (f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}", "warn" if each.rules else "dim"),
                 f"{best:8.2f} s  " if best is not None else " " * 12,
-                *(bar if each.is_open else ()),
+                *bar,
             )
         )
     return rows
@@ -171,10 +175,11 @@ def starts_rows(finishes: Sequence[RaceFinish], counts: int) -> list[Row]:
 
 
 def opens_after(level: GameLevel) -> str:
-    """Says what opens a level."""
-    lesson = f", or after lesson {level.lesson_number}" if level.opened_by_lesson else ""
+    """Says what opens a level: any of these."""
     titles = {each.id: each.title for each in all_levels()}
-    return f"opens after {' or '.join(titles[each] for each in level.opened_by)}{lesson}"
+    lesson = [f"lesson {level.lesson_number}"] if level.opened_by_lesson else []
+    *others, last = [*(titles[each] for each in level.opened_by), *lesson]
+    return f"opens after {' or '.join(filter(None, (', '.join(others), last)))}"
 
 
 def before_it_goes_on(seconds: float) -> list[Row]:

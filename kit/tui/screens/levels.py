@@ -75,7 +75,7 @@ NOTES: Final = (
     ("", "few training steps"),
     ("bump", "back to the start, and all targets are to be reached again"),
     ("side by side", "a pair that is apart for longer gets bronze at best"),
-    ("locked", "finish the level before it, or its lesson; on the map ( )"),
+    ("locked", "opens after the level before it, or its lesson; on the map ( )"),
 )
 
 

@@ -21,7 +21,7 @@ from kit.school.game.daily import daily_level, today
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, load_ghosts, load_reference_ghost
 from kit.school.game.league.house import house_programs
-from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
+from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, all_worlds, find_level
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import (
     BY_HAND,
@@ -179,6 +179,16 @@ def test_medals_are_counted_by_driver_beside_them() -> None:
     assert first.rules == {ExtraRule.CLEAN, ExtraRule.NO_STOP}
     assert found["left-turn"].is_open
     assert not found["two-doors"].is_open  # only a controller of the kit was through the door
+
+
+def test_a_newcomer_can_try_the_first_level_of_each_world_and_no_later_one() -> None:
+    found = level_progress(LEVELS, ())
+    for world in all_worlds():
+        first, *later = (each for each in found if each.level.world == world.id)
+        assert first.is_open
+        assert {each.level.id for each in later if each.is_open} == {
+            each.level.id for each in later if not each.level.opened_by
+        }
 
 
 def test_every_controller_of_the_kit_and_its_copies_earn_nothing(tmp_path: Path) -> None:
