@@ -229,7 +229,7 @@ def race_controller(
         session.drive_with(controller)
         session.wait_until_driven()
 
-    confinement = _confinement(controller) if confinement is None else confinement
+    confinement = confinement_of(controller) if confinement is None else confinement
     scenario = scenario_from(level, seed)
     return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s, seed, limits)
 
@@ -271,7 +271,7 @@ def open_race(
 
     The caller closes the session.
     """
-    session = Session(scenario, seed=OWN_SEED, level=_confinement(controller), always_scan=True)
+    session = Session(scenario, seed=OWN_SEED, level=confinement_of(controller), always_scan=True)
     referee = RaceReferee(level, scenario)
     recorder = Recorder.for_scenario(scenario, session.runner.simulation)
     session.runner.observers += [referee, recorder]
@@ -281,7 +281,7 @@ def open_race(
     return session, referee, recorder
 
 
-def _confinement(controller: ControllerFile) -> Confinement:
+def confinement_of(controller: ControllerFile) -> Confinement:
     """Programs that are not the kit's are confined where the machine can: one that drives for medals must not touch the
     journal or the recordings."""
     is_stranger = controller not in kit_controllers()

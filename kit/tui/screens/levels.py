@@ -111,7 +111,7 @@ class LevelsScreen(RowsScreen[None]):
             letter("agent", "a", "agent", "let an agent that you trained drive the level"),
             letter("leaderboard", "f", "leaderboard", "show this machine's leaderboard"),
             letter("daily", "d", "daily", "drive the level of the day, the same for everyone"),
-            letter("two_players", "2", "two players", "host a race or tag on the level, or join one"),
+            letter("two_players", "2", "two players", "tag or a race: with a program, or another player"),
         ),
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)

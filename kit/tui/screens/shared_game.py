@@ -11,6 +11,7 @@ from textual import work
 from textual.binding import BindingType
 from textual.message import Message
 
+from kit.controllers import ControllerFile
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import Row, row
@@ -23,6 +24,7 @@ from kit.run.scene_bodies import scene_bodies
 from kit.run.session import Session
 from kit.run.view import View
 from kit.school.game.ghosts import Ghost, level_ghosts
+from kit.school.game.league.tag_opponent import TagOpponent
 from kit.school.game.levels import GameLevel, find_level
 from kit.school.game.shared_server import SharedGameClient, SharedGameServer
 from kit.school.game.shared_sockets import Audience
@@ -132,11 +134,17 @@ class SharedScreen(WatchScreen):
 
     def action_back(self) -> None:
         """Asks first where a game would be lost by it."""
-        if self.player is not None and self.state is not None and self.state.phase is SharedPhase.RUNNING:
+        runs = self.state is not None and self.state.phase is SharedPhase.RUNNING
+        if runs and self.player is not None and self.loses_by_leaving:
             self.stop_driving()
             self._ask_whether_to_leave()
         else:
             super().action_back()
+
+    @property
+    def loses_by_leaving(self) -> bool:
+        """Whether somebody else's game ends when this player leaves it."""
+        return True
 
     @work(exclusive=True, group="leave")
     async def _ask_whether_to_leave(self) -> None:
@@ -179,11 +187,14 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         folder: Path,
         audience: Audience,
         workspace: Workspace | None = None,
+        program: ControllerFile | None = None,
     ) -> None:
         """``folder``: where hosts are found; see ``kit.school.game.shared_sockets``. ``name``: of the host's player.
-        ``workspace``: as of ``SharedScreen``."""
+        ``workspace``: as of ``SharedScreen``. ``program``: plays the second robot at tag, and nobody joins; None: a guest does."""
         super().__init__(theme, level, mode, workspace)
         self._player_name, self._folder, self._audience = name, folder, audience
+        self._opposing = program
+        self._opponent: TagOpponent | None = None
         self._game: SharedGame | None = None
         self._server: SharedGameServer | None = None
         self._phase = SharedPhase.WAITING
@@ -201,6 +212,10 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         session = Session(self._scenario, always_scan=True)
         self._game = game = SharedGame(self._scenario, self._mode, session.runner)
         session.runner.observers.append(game)
+        self.host.set_listener(self._publish)
+        if self._opposing is not None:
+            self._opponent = TagOpponent(session, game, self._opposing)
+            return session
         try:
             self._server = SharedGameServer(
                 self._folder, self._level.id, self._player_name, game, self._audience
@@ -209,13 +224,17 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
             session.close()
             raise
         self.join_command = f"kit game guest {self._server.path.stem}"
-        self.host.set_listener(self._publish)
         return session
 
     def _publish(self, session: Session) -> None:
         """Sends the state to the guest; runs in the world's thread, as often as there are views."""
-        if self._game is not None and self._server is not None:
-            self.state = state = self._server.publish(self._game.state)
+        if self._game is not None and (self._server is not None or self._opposing is not None):
+            state = self._game.state
+            if self._server is not None:
+                state = self._server.publish(state)
+            elif self._opposing is not None:
+                state = replace(state, names=(self._player_name, self._opposing.name))
+            self.state = state
             if state.phase is not self._phase:
                 self._phase = state.phase
                 self._record_phase(session, state.phase)
@@ -232,6 +251,8 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
             session.reset()
             self._recorder = Recorder.for_scenario(session.scenario, session.runner.simulation)
             observers.insert(0, self._recorder)  # before the game, which hands on pushes at the end of a tick
+            if self._opponent is not None:
+                self._opponent.begin()
 
     def action_restart(self) -> None:
         """Another game, after one that is over."""
@@ -278,9 +299,21 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
     def _newest_scene(self) -> Scene:
         return self._with_targets_and_ghosts(super()._newest_scene())
 
+    def _show_state(self) -> None:
+        super()._show_state()
+        if self._opponent is not None and self._opponent.failure and self.is_active:
+            told = wrap(f"The program has stopped: {self._opponent.failure}", self.size.width - 2, most=2)
+            self._rows("messages").show([row((f" {line}", "bad")) for line in told])
+
+    @property
+    def loses_by_leaving(self) -> bool:
+        return self._opposing is None
+
     def on_unmount(self) -> None:
         if self._server is not None:
             self._server.close()
+        if self._opponent is not None:
+            self._opponent.close()
 
 
 class SharedStateArrived(Message):

@@ -7,7 +7,10 @@ from typing import Any, Final
 
 from textual.app import App
 
+from kit.controllers import user_controllers
 from kit.document.rows import row
+from kit.host.private_folder import private_folder
+from kit.school.game.league.house import house_controllers
 from kit.school.game.levels import GameLevel, UnknownLevel
 from kit.school.game.shared_server import SharedGameClient
 from kit.school.game.shared_sockets import (
@@ -32,6 +35,8 @@ HOSTED: Final = {
     for whom in ("own", "all")
 }
 """The games that can be hosted, by the key of their line."""
+PROGRAM: Final = "program"
+"""The key of the line of a game against a program."""
 WHO_MAY_JOIN: Final = {
     "all": "a new game, which anybody on this machine may join",
     "own": "a new game, joined from another terminal of yours",
@@ -44,19 +49,38 @@ async def play_together(app: App[Any], theme: Theme, level: GameLevel, workspace
     choices = [
         PickerItem(name, f"join {name}", f"of {user_name(game.owner)}") for name, game in games.items()
     ]
+    choices.append(PickerItem(PROGRAM, "tag", "against a program: of the house, or your own"))
     for key, (mode, _) in HOSTED.items():
         choices.append(PickerItem(key, mode.value, WHO_MAY_JOIN[key.rpartition(" ")[2]]))
-    picked = await app.push_screen_wait(Picker(f"Two players on {level.title}", choices))
+    picked = await app.push_screen_wait(Picker(f"Tag or race on {level.title}", choices))
     try:
         if picked in games:
             client = await to_thread(SharedGameClient, games[picked], own_user_name(), plays=True)
             await app.push_screen_wait(SharedGuestScreen(theme, client, workspace))
+        elif picked == PROGRAM:
+            await _play_a_program(app, theme, level, workspace)
         elif picked is not None:
             mode, audience = HOSTED[picked]
             name, folder = own_user_name(), games_folder()
             await _host(app, SharedHostScreen(theme, level, mode, name, folder, audience, workspace))
     except (SharedGameError, CannotShare, UnknownLevel, LookupError, WorldError, OSError) as error:
         app.push_screen(MessageDialog("No game for two", str(error)))
+
+
+async def _play_a_program(app: App[Any], theme: Theme, level: GameLevel, workspace: Workspace) -> None:
+    with private_folder() as folder:
+        known = {each.name: each for each in house_controllers(folder)}
+        known |= {f"own {each.name}": each for each in user_controllers(workspace.controllers)}
+        choices = [
+            PickerItem(key, each.name, each.title if key.startswith("own ") else f"the house's, {each.title}")
+            for key, each in known.items()
+        ]
+        picked = await app.push_screen_wait(Picker("Who plays tag against you?", choices))
+        if picked is not None:
+            screen = SharedHostScreen(
+                theme, level, SharedMode.TAG, own_user_name(), folder, Audience(), workspace, known[picked]
+            )
+            await _host(app, screen)
 
 
 async def _host(app: App[Any], screen: SharedHostScreen) -> None:

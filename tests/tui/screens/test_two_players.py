@@ -13,7 +13,7 @@ from kit.run.recording import load_recording
 from kit.school.game.levels import find_level
 from kit.school.game.references import reference_recording
 from kit.school.game.shared_sockets import SharedGameError, answering_games, find_game
-from kit.school.game.two_players import SharedMode
+from kit.school.game.two_players import SharedMode, SharedPhase
 from kit.school.progress import ProgressJournal
 from kit.tui.screens import two_players
 from kit.tui.screens.dialogs import MessageDialog
@@ -89,3 +89,24 @@ def test_a_game_that_waits_is_joined(tmp_path: Path, games: Path, monkeypatch: p
 
     on_the_levels(prepare_workspace(tmp_path / "home"), scene)
     assert asked == [(waiting, True)] * 2
+
+
+@pytest.mark.long
+def test_tag_is_played_against_a_program_of_the_house(tmp_path: Path, games: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await choose(pilot, "against")
+        await until(pilot, lambda: "quick" in text(pilot), "the programs")
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, SharedHostScreen), "the game")
+        screen = pilot.app.screen
+        assert isinstance(screen, SharedHostScreen)
+        await until(pilot, lambda: screen.state and screen.state.phase is SharedPhase.RUNNING, "the start")
+        assert not answering_games(games)  # nobody joins it
+        before = screen.state and screen.state.poses[1]
+        await until(pilot, lambda: screen.state and screen.state.poses[1] != before, "it drives")
+        await pilot.press("escape")  # nobody's game but one's own
+        await until(pilot, lambda: pilot.app.screen is not screen, "the list of levels")
+
+    on_the_levels(workspace, scene)

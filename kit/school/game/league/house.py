@@ -9,11 +9,23 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
+from kit.controllers import ControllerFile
+
 PROGRAM: Final = Path(__file__).with_name("house_program.py")
 SPEEDS: Final = {"slow": 0.2, "steady": 0.35, "quick": 0.5}
 """The speed of each [m/s]."""
 SPEED_LINE: Final = b"SPEED = 0.5\n"
 """Of the program, in whose place each has its own."""
+
+
+def house_controllers(folder: Path) -> tuple[ControllerFile, ...]:
+    """The programs as files in a folder, which are written there."""
+    made = []
+    for name, program in house_programs().items():
+        file = folder / f"{name}.py"
+        file.write_bytes(program)
+        made.append(ControllerFile(name, file, f"at {SPEEDS[name]:g} m/s"))
+    return tuple(made)
 
 
 @cache

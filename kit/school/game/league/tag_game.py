@@ -8,7 +8,7 @@ services of the world. Beside its robot's topics it is told ``is_catcher`` (std_
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from typing import Final
@@ -77,7 +77,7 @@ def play_tag(
     runner = Runner(simulation, graph, offered_truths=frozenset())
     referee = SharedReferee(scenario, SharedMode.TAG, simulation)
     recorder = Recorder.for_scenario(scenario, simulation)
-    runner.observers += [referee, recorder, TagAnnouncer(graph, referee)]
+    runner.observers += [referee, recorder, TagAnnouncer(graph, referee, dict(enumerate(NAMESPACES)))]
     referee.begin()
     players: list[NodeProcess | None] = []
     failures = ["", ""]
@@ -87,7 +87,7 @@ def play_tag(
                 player = NodeProcess.start(
                     graph,
                     program.file,
-                    args=_program_arguments(scenario, number),
+                    args=program_arguments(scenario, number),
                     seed=OWN_SEED,
                     limits=limits,
                     level=confinement,
@@ -142,20 +142,27 @@ def tag_again(
 
 
 class TagAnnouncer(Observer):
-    """Tells both programs who catches and where the other robot is."""
+    """Tells programs who catches and where the other robot is."""
 
-    def __init__(self, graph: Graph, referee: SharedReferee) -> None:
+    def __init__(self, graph: Graph, referee: SharedReferee, spaces: Mapping[int, str]) -> None:
+        """``spaces``: the namespace of each player that a program plays, by the player's number."""
         self._referee = referee
         node = create_graph_node(graph, "tag")
         graph.reserved_names.add(node.handle.full_name)
-        self._catches = [node.create_publisher(Bool, f"/{space}/is_catcher", 10) for space in NAMESPACES]
-        self._places = [node.create_publisher(PoseStamped, f"/{space}/goal_pose", 10) for space in NAMESPACES]
+        self._told = [
+            (
+                number,
+                node.create_publisher(Bool, f"/{space}/is_catcher", 10),
+                node.create_publisher(PoseStamped, f"/{space}/goal_pose", 10),
+            )
+            for number, space in spaces.items()
+        ]
 
     def on_step(self, simulation: Simulation) -> None:
         if simulation.tick % TOLD_TICKS != 1:
             return
         state = self._referee.state
-        for number, (catches, places) in enumerate(zip(self._catches, self._places, strict=True)):
+        for number, catches, places in self._told:
             catches.publish(Bool(data=state.catcher == number))
             other = state.poses[1 - number]
             message = PoseStamped()
@@ -167,7 +174,7 @@ class TagAnnouncer(Observer):
             places.publish(message)
 
 
-def _program_arguments(scenario: Scenario, number: int) -> list[str]:
+def program_arguments(scenario: Scenario, number: int) -> list[str]:
     """What a program is told at its start: as in every race, and its target is where the other robot starts."""
     robots = (scenario.robot or "", GUEST)
     poses = {model.name: model.pose for model in scenario.world.models}
