@@ -17,7 +17,7 @@ NEWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
         "start": ("0.2.0", "W, A, S and D drive the robot; l opens the league of programs."),
         "levels": (
             "0.2.0",
-            "d is today's maze, the same for all; 2 is tag with a program or another player.",
+            "d is today's maze, the same for all; 2 plays tag or a race.",
         ),
         "lessons": ("0.2.0", "^E edits your program."),
     }
