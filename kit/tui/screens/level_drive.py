@@ -60,6 +60,7 @@ from kit.tui.screens.level_pictures import GHOST_LOOKS, ghost_driver, ghost_look
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish, edit_program
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
+from kit.tui.widgets.world_view import FloorClicked
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -536,6 +537,12 @@ class LevelDrive(WatchScreen):
     def action_share(self) -> None:
         """The map that the robot has drawn, as files."""
         self.save_laser_map(self._workspace.folder / "cards", self._level.id)
+
+    def on_floor_clicked(self, event: FloorClicked) -> None:
+        """Clicks drive where nothing is judged."""
+        if not self._is_over:
+            self._notice = row((" In a level the keys drive, not clicks.", "dim"))
+            self._show()
 
     def action_ghosts(self) -> None:
         self._with_ghosts = not self._with_ghosts

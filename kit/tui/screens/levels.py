@@ -309,9 +309,9 @@ class LevelsScreen(RowsScreen[None]):
         ]
         ghosts = self._known.get(level.id, ())
         is_beside = self.size.width >= ABOUT_COLUMN + COLUMN
-        width = ABOUT_COLUMN - 1 if is_beside else self.size.width
+        width = (ABOUT_COLUMN - 1 if is_beside else self.size.width) - 1  # beside the margin of the list
         about = level_rows.about(self.chosen, ghosts, self._references[level.id], width)
-        about = [fitted(each, width) for each in about]
+        about = [fitted(row(" ", *each), width + 1) for each in about]
         if is_beside:
             about = side_by_side(about, self._card_rows(self.size.width - ABOUT_COLUMN - 1), ABOUT_COLUMN)
         return listed, about
