@@ -125,12 +125,11 @@ class Painter:
             self._wall_grid, self._walls, self._view = grid, scene.walls, view
             self._rings.clear()
             self._wall_cells = raster.drawn_cells(grid, across, down)
-            if self.shaded:
-                self._floor = self._floor_map.cells(camera, grid, across, down)
-                walled = grid.reshape(camera.rows, down, camera.columns, across) == Role.WALL
-                self._solid = walled.mean(axis=(1, 3)) >= 0.5
-                self._lasers = np.empty((0, 2))
-                self._faces = self._wall_cells & _beside(self._floor & ~self._wall_cells)
+            self._floor = self._floor_map.cells(camera, grid, across, down)
+            walled = grid.reshape(camera.rows, down, camera.columns, across) == Role.WALL
+            self._solid = walled.mean(axis=(1, 3)) >= 0.5
+            self._lasers = np.empty((0, 2))
+            self._faces = self._wall_cells & _beside(self._floor & ~self._wall_cells)
         return self._wall_grid
 
 
