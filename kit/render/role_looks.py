@@ -102,7 +102,9 @@ ROLE_LOOKS: Mapping[Role, RoleLook] = MappingProxyType(
         ),
         Role.TRAIL: _look(",", RoleStyle("cyan"), 0x4296AA, 0x549CAE, 0x00C8C8, 0x4682AA),
         Role.TRAIL_2: _look(";", RoleStyle("magenta"), 0xB0609C, 0xBE6EA8, 0xFF78FF, 0xA06E8C),
-        Role.PEN_WHITE: _pen("w", "white", 0xC8C8C8),
+        Role.PEN_WHITE: _look(
+            "w", DEFAULT_STYLE, 0xC8C8C8, 0x464646, 0xC8C8C8, 0xC8C8C8
+        ),  # black ink on paper
         Role.PEN_RED: _pen("r", "red", 0xDC3C3C),
         Role.PEN_YELLOW: _pen("y", "yellow", 0xDCC83C),
         Role.PEN_GREEN: _pen("g", "green", 0x46BE5A),

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
-from PIL import Image, ImageOps
+from PIL import Image, ImageFilter, ImageOps
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.message import Message
 
-from kit.arrays import FloatArray
+from kit.arrays import BoolArray, FloatArray
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import row
@@ -40,6 +40,16 @@ THRESHOLDS: Final = (
     np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float64) * 16 + 8
 )
 """Brightness above which a dot is lit, by its place in a square of four (Bayer's matrix): many thresholds look like grey."""
+
+
+PARTS: Final = 3
+"""A dot is looked at in so many parts along each side: a line is thinner than a dot."""
+AROUND: Final = 9
+"""Dots along a side of the surroundings that a line is compared with."""
+LINE_SHARE: Final = 0.75
+"""What is darker than this share of its surroundings is a line."""
+LEAST_PAPER: Final = 60
+"""Brightness of 255 above which surroundings can be paper."""
 
 
 class PhotoView(FrameView):
@@ -82,14 +92,12 @@ class PhotoView(FrameView):
             _first_seen(cursor[1], seen[1], height),
         )
         dots = columns * encoder.across, rows * encoder.down
-        part = Image.new("L", dots)  # what lies beyond the photograph is dark
         inside = (max(0.0, left), max(0.0, top), min(width, left + seen[0]), min(height, top + seen[1]))
         (x1, y1), (x2, y2) = self._dot(inside[:2], dots), self._dot(inside[2:], dots)
         size = max(1, round(x2 - x1)), max(1, round(y2 - y1))
-        part.paste(self._grey.resize(size, Image.Resampling.BOX, inside), (round(x1), round(y1)))
-        levels = np.asarray(part, dtype=np.float64)
-        tiles = np.tile(THRESHOLDS, (-(-dots[1] // 4), -(-dots[0] // 4)))[: dots[1], : dots[0]]
-        grid = np.where(levels > tiles, np.uint8(Role.PEN_WHITE), np.uint8(Role.EMPTY))
+        part = Image.new("1", dots)  # what lies beyond the photograph is dark
+        part.paste(Image.fromarray(lit_dots(self._grey, inside, size)), (round(x1), round(y1)))
+        grid = np.where(np.asarray(part), np.uint8(Role.PEN_WHITE), np.uint8(Role.EMPTY))
         places = [self._dot(corner, dots) for corner in corners]
         lines = [
             (*one, *other)
@@ -122,6 +130,30 @@ class PhotoView(FrameView):
         self.post_message(
             self.Clicked((left + (event.x + 0.5) * self._scale, top + (event.y + 0.5) * 2 * self._scale))
         )
+
+
+def lit_dots(
+    grey: Image.Image, inside: tuple[float, float, float, float], size: tuple[int, int]
+) -> BoolArray:
+    """The dots (rows, columns) that show a part of a grey picture [pixels] in ``size`` columns and rows of dots. As many are lit as
+    it is bright. A line that is darker than its surroundings stays dark between lit dots, however thin it is.
+
+    >>> picture = Image.new("L", (100, 100), 128)
+    >>> picture.paste(0, (50, 0, 52, 100))
+    >>> lit_dots(picture, (0, 0, 100, 100), (20, 20))[10, 9:12].tolist()
+    [True, False, True]
+    """
+    columns, rows = size
+    fine = grey.resize((PARTS * columns, PARTS * rows), Image.Resampling.BOX, inside)
+    parts = np.asarray(fine, dtype=np.float64).reshape(rows, PARTS, columns, PARTS)
+    levels, darkest = parts.mean(axis=(1, 3)), parts.min(axis=(1, 3))
+    around = np.asarray(Image.fromarray(levels.astype(np.uint8)).filter(ImageFilter.MedianFilter(AROUND)))
+    is_paper = around > LEAST_PAPER
+    is_line = is_paper & (darkest < LINE_SHARE * around)
+    is_beside = np.asarray(Image.fromarray(is_line).convert("L").filter(ImageFilter.MaxFilter(3))) > 0
+    tiles = np.tile(THRESHOLDS, (-(-rows // 4), -(-columns // 4)))[:rows, :columns]
+    lit: BoolArray = ((levels > tiles) | (is_beside & is_paper)) & ~is_line
+    return lit
 
 
 def _first_seen(middle: float, seen: float, length: int) -> float:

@@ -9,7 +9,7 @@ from textual.pilot import Pilot
 
 from kit.mapmaking.photo import PhotoScale, plan_from_photo
 from kit.mapmaking.sheet import SheetNotFound, find_sheet, order_corners, refine_corners
-from kit.tui.screens.photo_corners import PhotoCornersScreen, PhotoView
+from kit.tui.screens.photo_corners import PhotoCornersScreen, PhotoView, lit_dots
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 
 CORNERS = ((100.0, 60.0), (700.0, 90.0), (680.0, 520.0), (80.0, 500.0))
@@ -89,3 +89,21 @@ def test_corners_stay_where_they_were_put_if_no_edge_is_seen() -> None:
         find_sheet(bright)
     rough = tuple((x + 3, y - 2) for x, y in CORNERS)
     assert refine_corners(bright, order_corners(rough)) == rough
+
+
+@pytest.mark.parametrize("paper", [110, 240], ids=["in shadow", "in light"])
+@pytest.mark.parametrize("columns", [160, 320])
+def test_a_line_thinner_than_a_dot_is_seen_on_paper_in_shadow_and_in_light(paper: int, columns: int) -> None:
+    image = Image.new("L", (1000, 750), 20)
+    draw = ImageDraw.Draw(image)
+    draw.rectangle((100, 100, 900, 650), fill=paper)
+    draw.line((500, 200, 500, 500), fill=paper // 3, width=2)
+    dots = lit_dots(image, (0.0, 0.0, 1000.0, 750.0), (columns, columns * 3 // 4))
+    scale = columns / 1000
+    across = dots[int(350 * scale) : int(370 * scale), int(500 * scale) - 2 : int(500 * scale) + 3]
+    (dark,) = np.flatnonzero(~across.any(axis=0))
+    assert across[:, [dark - 1, dark + 1]].all(), "and what is beside it lit"
+    assert dots[int(350 * scale), int(150 * scale) : int(450 * scale)].mean() == pytest.approx(
+        paper / 255, abs=0.15
+    )
+    assert not dots[: int(90 * scale)].any(axis=1).all(), "the table stays dark"
