@@ -12,6 +12,8 @@ RATE_WIDTH: Final = 8
 ARROW_WIDTH: Final = 2
 MIN_LANE_WIDTHS: Final = (5, 8)
 """Characters kept for lanes, left and right, so that the columns stay where they are when one joins."""
+LEAST_LANE_WIDTH: Final = 2
+"""Characters kept for them where a name would else be cut."""
 MIN_NAME_WIDTH: Final = 8
 
 
@@ -52,10 +54,13 @@ def fit_columns(width: int, layout: GraphLayout) -> ColumnLayout:
     """
     needed = [max(side.lanes.values(), default=-1) + 1 for side in (layout.senders, layout.receivers)]
     left, right = (max(least, lanes) for least, lanes in zip(MIN_LANE_WIDTHS, needed, strict=True))
-    names = max(3 * MIN_NAME_WIDTH, width - left - right - RATE_WIDTH - 2 * ARROW_WIDTH)
-    nodes = names // 3
     longest_node = _room_for(*layout.senders.rows, *layout.receivers.rows)
     longest_item = _room_for(*layout.items)
+    free = width - RATE_WIDTH - 2 * ARROW_WIDTH - 2 * longest_node - longest_item
+    right = min(right, max(LEAST_LANE_WIDTH, needed[1], free - left))
+    left = min(left, max(LEAST_LANE_WIDTH, needed[0], free - right))
+    names = max(3 * MIN_NAME_WIDTH, width - left - right - RATE_WIDTH - 2 * ARROW_WIDTH)
+    nodes = names // 3
     spare = names - 2 * nodes - longest_item
     if spare > 0:
         nodes += max(0, min(longest_node - nodes, spare // 2))

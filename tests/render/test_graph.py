@@ -156,6 +156,8 @@ def test_a_name_is_whole_where_another_column_has_more_than_it_needs() -> None:
         shown = picture(talk(item(topic, node, node))).rows()[0]
         assert shown.count(node) == 2
         assert topic in shown
+    narrow = picture(talk(item("/static_laser", "/flatland_server", "/controller")), width=72).rows()[0]
+    assert "/flatland_server" in narrow, "lanes without a line give way"
 
 
 def test_long_names_keep_what_tells_them_apart() -> None:
@@ -163,7 +165,7 @@ def test_long_names_keep_what_tells_them_apart() -> None:
         item("/some_robot_of_the_second_floor/get_parameters()", "/a", "/b"),
         item("/some_robot_of_the_second_floor/set_parameters()", "/a", "/b"),
     )
-    rows = picture(shown).rows()
+    rows = picture(shown, width=60).rows()
     assert "get_parameters()" in rows[0]
     assert "set_parameters()" in rows[1]
     assert "…" in rows[0]

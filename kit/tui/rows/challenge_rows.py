@@ -191,8 +191,8 @@ def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[
     return [
         *_wrap_with_lead("", challenge.story, width),
         *_wrap_with_lead("task  ", challenge.written_task, width, "dim"),
-        *(row((line, "code")) for line in challenge.task.lines()),
-        row((place, "bold")),
+        *(each for line in challenge.task.lines() for each in broken(row((line, "code")), width)),
+        *broken(row((place, "bold")), width),
     ]
 
 

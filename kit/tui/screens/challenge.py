@@ -17,15 +17,27 @@ from kit.document.rows import Row, broken, row, row_width, side_by_side
 from kit.host.file_watcher import FileWatcher
 from kit.learning.training.run_folders import list_runs
 from kit.school.game.challenge import AnswerError, AnswerSubmission, Challenge
-from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
+from kit.school.game.challenges import (
+    answers_folder,
+    challenge_events,
+    challenge_medals,
+    prepare_answer,
+    record_judgement,
+)
 from kit.school.game.judgement import Judgement
 from kit.school.game.medal import Medal
 from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.shared_answers import share_answer
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.flourish import Flourish
-from kit.tui.rows.challenge_rows import answers_needed_rows, beside_others, challenge_page, judged
-from kit.tui.rows.key_rows import bindings
+from kit.tui.rows.challenge_rows import (
+    answers_needed_rows,
+    beside_others,
+    challenge_page,
+    challenge_standing,
+    judged,
+)
+from kit.tui.rows.key_rows import FOOTER_ROWS, bindings
 from kit.tui.rows.lesson_rows import checking
 from kit.tui.rows.medal_rows import medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
@@ -118,8 +130,17 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         # Textual calls the inherited handler after this one.
 
     def _page(self, width: int) -> list[Row]:
-        """What the challenge asks for, in rows of at most ``width`` columns."""
-        return challenge_page(self._challenge, self._file, min(width, COLUMN - 2) if width >= WIDE else width)
+        """What the challenge asks for, in rows of at most ``width`` columns; on a large screen the checks so far and the lesson that
+        teaches it too."""
+        if width < WIDE:
+            return challenge_page(self._challenge, self._file, width)
+        if width < 2 * COLUMN:
+            return challenge_page(self._challenge, self._file, width - LEAST_BESIDE - GAP)
+        page = challenge_page(self._challenge, self._file, COLUMN - GAP)
+        checks = challenge_events(self._progress, self._challenge)
+        standing = challenge_standing(self._challenge, checks, COLUMN - GAP)
+        room = self.app.size.height - len(page) - self._rows_below - FOOTER_ROWS - 1
+        return [*page, *standing] if len(standing) <= room else page
 
     def _arranged(self, width: int, height: int) -> list[Row]:
         column = COLUMN if width >= 2 * COLUMN else max(map(row_width, self._rows), default=0) + GAP

@@ -217,7 +217,7 @@ class DialogueScreen(RowsScreen[None]):
             return
         for view, is_shown in ((self._playback, self._playback.scene is not None), (self._world, True)):
             view.display = is_shown and rows > 0
-            view.styles.height = min(rows, self._playback.rows or rows) if view is self._playback else rows
+            view.styles.height = rows
             view.styles.margin = (0, MARGIN, 0, self._left + MARGIN)
             rows = 0 if is_shown else rows
 

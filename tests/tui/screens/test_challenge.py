@@ -311,6 +311,10 @@ def test_what_the_answer_is_about_stands_beside_the_page(
         await pilot.press(*choose(levels, TrainingTask), "enter")
         await seen(pilot, "a training run of yours")
         await seen(pilot, "◎")  # the target on the task's map
+        target = next(each for each in rows(pilot) if "◎" in each)
+        assert target.index("◎") > size[0] // 2, "beside the page"
+        assert "…" not in "".join(rows(pilot)), "nothing of the page is cut"
+        assert any("── lesson" in each for each in rows(pilot)) is (size[0] == 200)
         await pilot.press("escape")
         await until(pilot, lambda: pilot.app.screen is levels, "the list")
         chosen = next(
