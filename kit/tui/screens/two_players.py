@@ -71,10 +71,7 @@ async def _play_a_program(app: App[Any], theme: Theme, level: GameLevel, workspa
     with private_folder() as folder:
         known = {each.name: each for each in house_controllers(folder)}
         known |= {f"own {each.name}": each for each in user_controllers(workspace.controllers)}
-        choices = [
-            PickerItem(key, each.name, each.title if key.startswith("own ") else f"the house's, {each.title}")
-            for key, each in known.items()
-        ]
+        choices = [PickerItem(key, each.name, each.title) for key, each in known.items()]
         picked = await app.push_screen_wait(Picker("Who plays tag against you?", choices))
         if picked is not None:
             screen = SharedHostScreen(

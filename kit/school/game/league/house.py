@@ -24,7 +24,7 @@ def house_controllers(folder: Path) -> tuple[ControllerFile, ...]:
     for name, program in house_programs().items():
         file = folder / f"{name}.py"
         file.write_bytes(program)
-        made.append(ControllerFile(name, file, f"at {SPEEDS[name]:g} m/s"))
+        made.append(ControllerFile(f"{name} (house)", file, f"at {SPEEDS[name]:g} m/s"))
     return tuple(made)
 
 

@@ -41,7 +41,7 @@ def play(session: Session, game: SharedGame, opponent: TagOpponent, seconds: flo
 
 
 def test_it_drives_while_the_game_runs_and_again_in_a_rematch(tmp_path: Path) -> None:
-    (program,) = (each for each in house_controllers(tmp_path) if each.name == "quick")
+    (program,) = (each for each in house_controllers(tmp_path) if each.file.stem == "quick")
     with opened(program) as (session, game, opponent):
         start = game.state.poses
         for _ in range(2):
