@@ -13,7 +13,7 @@ from kit.geometry import Pose
 from kit.host.wire import Json, ProtocolError, boolean, integer, items, number, text
 from kit.school.game.two_players import PLAYERS, SharedGameState, SharedMode, SharedPhase
 
-VERSION: Final = 4
+VERSION: Final = 5
 MAX_FRAME: Final = 4096
 """Bytes of a frame, in both directions."""
 MAX_PLAYER_NAME: Final = 24
@@ -96,7 +96,7 @@ def encode_state(state: SharedGameState) -> Json:
     scores: Json = [round(each, 2) for each in state.scores]
     watching: Json = list(state.watching[:MAX_WATCHING])
     who: Json = [state.catcher, state.winner, list(state.names), state.asks_again, watching, state.has_left]
-    return ["state", state.phase.value, round(state.seconds, 3), poses, scores, *who]
+    return ["state", state.phase.value, round(state.seconds, 3), poses, scores, *who, list(state.wins)]
 
 
 def parse_from_guest(frame: Json) -> JoinRequest | KeyPush | RematchRequest:
@@ -128,8 +128,8 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             boolean(plays),
         )
     if kind == "state":
-        phase, seconds, poses, scores, catcher, winner, names, asks_again, watching, has_left = items(
-            rest, 10
+        phase, seconds, poses, scores, catcher, winner, names, asks_again, watching, has_left, wins = items(
+            rest, 11
         )
         if len(items(watching)) > MAX_WATCHING:
             raise ProtocolError(f"more than {MAX_WATCHING} spectators")
@@ -144,6 +144,7 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             boolean(asks_again),
             tuple(_read_name(each) for each in items(watching)),
             boolean(has_left),
+            tuple(int(_read_bounded(integer(each), MAX_SECONDS)) for each in items(wins, PLAYERS)),
         )
     raise ProtocolError("a frame of an unknown kind")
 

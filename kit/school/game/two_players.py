@@ -93,6 +93,8 @@ class SharedGameState:
     """Names of those who only watch."""
     has_left: bool = False
     """Whether it is over, or waits again, because the player who has not won has left."""
+    wins: tuple[int, ...] = (0,) * PLAYERS
+    """Games that each has won against the other so far."""
 
     def next_targets(
         self, targets: Sequence[tuple[float, float]], player: int | None
@@ -256,11 +258,17 @@ class SharedGame(SharedReferee):
         self._has_second = False
         self._asks_again = self._has_left = False
         self._first_catcher = self._catcher
+        self._wins = [0] * PLAYERS
 
     @property
     def state(self) -> SharedGameState:
         asks_again = self._asks_again and self.is_over
-        return replace(super().state, asks_again=asks_again, has_left=self._has_left)
+        return replace(super().state, asks_again=asks_again, has_left=self._has_left, wins=tuple(self._wins))
+
+    def _enter(self, phase: SharedPhase) -> None:
+        super()._enter(phase)
+        if self.is_over and self._winner is not None:
+            self._wins[self._winner] += 1
 
     def push(self, player: int, linear: float, angular: float) -> None:
         """What a player's keys ask for now, forward and left, each from -1 to 1; more is cut. From any thread."""
@@ -268,6 +276,8 @@ class SharedGame(SharedReferee):
 
     def start(self) -> None:
         """The second player has come: the countdown begins."""
+        if not self._has_second:  # another one
+            self._wins = [0] * PLAYERS
         self._has_second = True
         if self._phase is SharedPhase.WAITING:
             self._has_left = False
@@ -283,8 +293,7 @@ class SharedGame(SharedReferee):
         self._asks_again = False
         self._has_second = False
         if self._phase is SharedPhase.RUNNING:
-            self._winner = 1 - player
-            self._has_left = True
+            self._winner, self._has_left = 1 - player, True
             self._enter(SharedPhase.OVER)
         elif self._phase is SharedPhase.COUNTDOWN:
             self._has_left = True

@@ -101,6 +101,7 @@ def players_card(mode: SharedMode, state: SharedGameState, me: int | None, width
                 ("  catches" if catches else "", "warn"),
             ),
             row(f"  {_score_text(mode, state, number)}"),
+            *([row(f"  {counted(state.wins[number], 'game')} won")] if any(state.wins) else []),
         ]
     one, other = state.poses
     rows.append(row(f"apart {math.dist(one[:2], other[:2]):.2f} m"))

@@ -293,11 +293,13 @@ def test_a_rematch_begins_anew_with_the_other_catching_first_or_waits(
     )
     until(session, COUNTDOWN + 1.5)
     assert (game.state.phase, game.state.catcher, game.state.winner) == (SharedPhase.OVER, 1, 0)
+    assert game.state.wins == (1, 1)
     game.remove_player(1)
     game.rematch()
     assert game.state.phase is SharedPhase.WAITING  # nobody is there to play against
     game.start()
     assert game.state.phase is SharedPhase.COUNTDOWN
+    assert game.state.wins == (0, 0)  # another player
 
 
 # What the wire lets through
@@ -332,18 +334,20 @@ BAD_FROM_GUEST: tuple[Json, ...] = (
 )  # fmt: skip
 BAD_FROM_HOST: tuple[Json, ...] = (
     ["push", 0.0, 0.0], ["offer", VERSION, "x" * 100, "race", "a", True], ["offer", VERSION, "a", "chess", "a", True],
-    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
-    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
-    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None, ["a", "b"], False, [], False],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a"], False, [], False],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a" * 1000, "b"], False, [], False],
-    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], 1, [], False],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], 1],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a"] * 99, False],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a" * 99], False],
+    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None, ["a", "b"], False, [], False, [0, 0]],
+    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None, ["a", "b"], False, [], False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a"], False, [], False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a" * 1000, "b"], False, [], False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False, [0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False, [0, 0.5]],
+    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], 1, [], False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, [], 1, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a"] * 99, False, [0, 0]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a" * 99], False, [0, 0]],
 )  # fmt: skip
 
 
@@ -373,6 +377,7 @@ def test_numbers_and_names_of_frames_go_up_to_their_limits() -> None:
             False,
             [],
             False,
+            [0, 0],
         ]
 
     most = (MAX_SECONDS, -MAX_COORDINATE, MAX_SECONDS, "n" * MAX_PLAYER_NAME)
