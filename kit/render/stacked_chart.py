@@ -17,7 +17,7 @@ from kit.render.encode import UNICODE_GLYPHS, Frame, GlyphSet
 from kit.render.frame_text import write_text
 from kit.render.roles import Role
 
-NEWEST: Final = "in the last batch"
+NEWEST: Final = "last batch"
 
 
 @dataclass(frozen=True, slots=True)
