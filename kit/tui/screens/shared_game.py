@@ -117,11 +117,11 @@ class SharedScreen(WatchScreen):
     @property
     def help_notes(self) -> tuple[tuple[tuple[str, str], ...], ...]:
         """The rule, and what is on the map."""
-        robots = (("on the map: 1  2", "the players' robots"),)
-        letters = LETTER_NOTES[1:3] if self._mode is SharedMode.RACE else ()
+        robots = ("1  2", "on the map: the players' robots")
+        letters = LETTER_NOTES[:3] if self._mode is SharedMode.RACE else ()
         lines = wrap(RULES[self._mode], RULE_WIDTH)
         rule = tuple((self._mode.value if line == lines[0] else "", line) for line in lines)
-        return rule, (*robots, *((("R", "the reference"), *letters) if letters else ()))
+        return rule, (robots, *letters)
 
     @property
     def _unavailable_actions(self) -> tuple[str, ...]:
