@@ -108,9 +108,9 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 
     A level can be driven once a level before it is finished or the lesson that opens it too is completed; the level of
     the day is always open. Driving by hand, your program and your agent win separate medals, by ladders
-    of their own: bronze, silver, gold, master and, quicker than the reference drive, the record. A drive that touches
-    something, or in which a pair is apart for too long, gets bronze at best. A program or an agent drives from five
-    starts (shifted, with noise, other traffic), and the middle drive counts. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
+    of their own: bronze, silver, gold, master and, quicker than the reference drive, the record. A drive with a
+    bump, or in which a pair is apart for too long, gets bronze at best. A program or an agent drives from five
+    starts (shifted, with noise, other traffic), and the middle drive counts. Each extra rule earns a star: no bump, no stop, one sensor, few lines of
     code, few training steps. The kit's own controllers demonstrate and earn nothing. A task used as a level (its first
     case) has no reference drive and so no medals; it has your time, your best time and its ghost. KIT_BELL=1 rings
     the bell for a new medal.
@@ -243,7 +243,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         if name is None:
             medals = challenge_medals(journal.events())
             rows = [
-                (_medal_letter(medals.get(each.id, Medal.NONE)), each.id, f"{each.title}. {each.story}")
+                (_medal_letter(medals.get(each.id, Medal.NONE)), each.id, f"{each.title}. {each.task_text}")
                 for each in all_challenges()
             ]
             click.echo("\n".join(lines_of([labelled_table(rows, indent=2)])))
@@ -389,7 +389,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
         if finish.foul:
             return f"it does not count: {finish.foul}"
         if finish.reached:
-            return f"goal reached after {finish.seconds:.2f} s; quit ends the drive"
+            return f"finished after {finish.seconds:.2f} s; quit ends the drive"
         charge = f"{max(0.0, referee.battery.charge):.1f} m of charge" if level.conditions.charge else ""
         return ", ".join(filter(None, (referee.objective.progress, charge)))
 
@@ -486,7 +486,7 @@ def _record_drive(
         click.echo(f"The program stopped: {finish.failure}")
     if finish.foul:
         click.echo(f"It does not count: {finish.foul}.")
-    end = f"reached the goal after {finish.seconds:.2f} s" if finish.reached else "did not reach the goal"
+    end = f"finished after {finish.seconds:.2f} s" if finish.reached else "not finished"
     click.echo(f"{level.title}: {end}, {counted(finish.collisions, 'bump')}.")
     if record.is_shipped:
         click.echo("The kit's own controller drove: it demonstrates the level and earns nothing.")

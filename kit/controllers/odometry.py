@@ -103,7 +103,7 @@ class SetupNode(Node):
 
     def _on_collisions(self, name: str, message: Collisions) -> None:
         if message.collisions:
-            self.stop(f"Stopped: {name} has touched something.")
+            self.stop(f"Stopped: {name} has bumped into something.")
 
 
 def spin(make_node: Callable[[], Node], args: list[str] | None) -> None:

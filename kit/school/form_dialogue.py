@@ -21,7 +21,7 @@ from kit.school.survey import AnswerShape, AnswerValue, SurveyPhase, SurveyQuest
 
 KEPT: Final = (
     ("what is kept", "each answer, as soon as you go on, go back, leave or quit"),
-    ("blank", "Enter without an answer; it counts as nothing else"),
+    ("blank", "Enter without an answer; it is not counted"),
     ("who sees it", "your teacher, once you hand in your progress"),
 )
 BEFORE_CURRENT: Final = 3

@@ -272,13 +272,14 @@ def test_a_packed_task_is_checked_and_unpacked() -> None:
 
 
 def test_a_new_task_of_a_level_says_the_way_to_its_race() -> None:
-    told = kit("task", "new", "mine", "--level", "lying-wheels").output
+    told = kit("task", "new", "mine", "--level", "wheels-that-lie").output
     assert "kit train mine --algo recurrent-ppo" in told
-    assert "kit game race lying-wheels --agent mine" in told
+    assert "kit game race wheels-that-lie --agent mine" in told
     assert ": valid" in kit("task", "check", "mine").output
     assert "already exists" in kit("task", "new", "mine", "--level", "depot", code=2).output
     assert (
-        "--steps 1500000 --seed 1 --name night" in kit("task", "new", "night", "--level", "long-night").output
+        "--steps 1500000 --seed 1 --name night"
+        in kit("task", "new", "night", "--level", "the-long-night").output
     )
     kit("task", "new", "three", "--level", "depot")
     assert "rad/s" not in kit("task", "show", "three").output

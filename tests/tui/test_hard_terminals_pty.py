@@ -27,7 +27,7 @@ SCREENS = {
     "level": (("game", "play", "first-drive"), b"", "The clock starts"),
     "lesson": (("lesson", "1"), b"", "Predict"),
     "nodes": (("play", "simple"), b"n", "static_laser"),
-    "form": (("form",), b"", "highest degree"),
+    "form": (("form",), b"", "highest education"),
 }
 """By name: the command, keys after its first picture, and words that are on the screen then."""
 

@@ -24,7 +24,7 @@ NO_RUNS: Final = Path(os.devnull) / "runs"
 COMMENT: Final = "#"
 """Begins a line of an answer's file that is not part of the answer."""
 GOLD_GAIN, SILVER_GAIN = 0.98, 0.75
-"""Shares of what the best answer gains on the naive one that earn gold and silver, where more is better."""
+"""Shares of what the best answer gains on the shortest way that earn gold and silver, where more is better."""
 
 
 class AnswerError(ValueError):
@@ -105,7 +105,7 @@ class ChallengeTask(ABC):
         file = folder / self.answer_file
         if not file.exists():
             file.parent.mkdir(parents=True, exist_ok=True)
-            comments = [*about, "Below is the naive answer, which earns no medal.", *self.lines()]
+            comments = [*about, "Below is a simple answer, which earns no medal.", *self.lines()]
             write_atomically(file, (as_comments(comments) + self.naive_answer()).encode())
         return file
 
@@ -130,8 +130,8 @@ class ChallengeTask(ABC):
 
 
 def judge_return(text: str, answer: float, naive: float, best: float) -> Judgement:
-    """Judges a return by its share of what the best one gains on the naive one."""
-    others = (("naive answer", naive), ("best answer", best))
+    """Judges a return by its share of what the best one gains on ``naive``, that of the shortest way."""
+    others = (("shortest way", naive), ("best answer", best))
     gains = ((Medal.SILVER, SILVER_GAIN), (Medal.GOLD, GOLD_GAIN))
     rungs = (
         (Medal.BRONZE, math.nextafter(naive, math.inf)),

@@ -47,5 +47,5 @@ class Judgement:
 def judge_count(unit: str, text: str, count: int, fewest: int, naive: int, near: int = 1) -> Judgement:
     """Judges an answer of which less is better and ``fewest`` is proved. ``near``: that many more still earn silver."""
     rungs = ((Medal.BRONZE, naive - 1), (Medal.SILVER, min(fewest + near, naive - 1)), (Medal.GOLD, fewest))
-    comparison = AnswerComparison(unit, count, (("naive answer", naive), ("best answer", fewest)), rungs)
+    comparison = AnswerComparison(unit, count, (("simple answer", naive), ("best answer", fewest)), rungs)
     return Judgement(comparison.medal, text, comparison)

@@ -37,8 +37,8 @@ class ExtraRule(StrEnum):
     def description(self, level: GameLevel) -> str:
         """The rule in words, with the level's limits."""
         return {
-            ExtraRule.CLEAN: "touched nothing",
-            ExtraRule.NO_STOP: "never stood still on the way",
+            ExtraRule.CLEAN: "no bump",
+            ExtraRule.NO_STOP: "no stop on the way",
             ExtraRule.ONE_SENSOR: "a program or agent that listens to one sensor",
             ExtraRule.FEW_LINES: f"a program of at most {level.rules.max_lines} lines of code",
             ExtraRule.FEW_STEPS: f"an agent of at most {level.rules.max_training_steps or 0:,} training steps",

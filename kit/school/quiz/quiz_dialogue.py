@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from enum import Enum
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
@@ -205,7 +206,8 @@ class QuizDialogue(Dialogue):
         lesson, step = taught
         picture = [Picture(tuple(step.picture.splitlines()))] if step.picture else []
         title = f"lesson {lesson.number}, step {step.number}: {step.title}"
-        return Panel(title, (*picture, Marked(fill_in_paths(step.text, None))))
+        file = None if step.exercise is None else Path(step.exercise.file)
+        return Panel(title, (*picture, Marked(fill_in_paths(step.text, file))))
 
     def _options(self, item: QuizItem) -> list[Block]:
         """``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""
@@ -303,7 +305,7 @@ class QuizDialogue(Dialogue):
             say_not_sure, is_asked, then="next",
         ),
         DialogueAction(
-            letter("skip", "x", "leave blank", "leave the question blank; press it twice"),
+            letter("skip", "x", "blank (twice)", "leave the question blank; press it twice"),
             leave_blank, is_asked, confirm="x once more leaves it blank; 0 says that you are not sure.", then="next",
         ),
         DialogueAction(ACTIONS["next"], go_on, can_go_on, word=next_word),

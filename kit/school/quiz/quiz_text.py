@@ -157,7 +157,7 @@ def topic_map(bank: QuestionBank, answers: Iterable[QuizAnswer], current: QuizTo
             ">" if topic is current else "",
             ToneText(topic.label, Tone.BOLD if topic is current else Tone.PLAIN),
             _bar(each),
-            f"{each.right} of {each.total}",
+            f"{each.right} of {each.total} right",
         )
         for topic, each in counts.items()
     )
@@ -183,7 +183,7 @@ def round_blocks(session: QuizSession, number: int) -> tuple[Block, ...]:
         marks[number - 1] = ">"
     said = "+ right  x wrong  0 not sure  - blank"
     if "*" in marks:
-        said = f"* before  {said}"
+        said = f"* answered before  {said}"
     return Text(" ".join(marks), Tone.BOLD), Picture((said,), indent=0, tone=Tone.DIM, is_tight=True)
 
 

@@ -374,7 +374,7 @@ def worth_now(
 ) -> tuple[list[Row], list[Row]]:
     """What the answer on a board is worth, with a bar from the naive answer to the best one; and a sentence about it. ``check``:
     what came of handing it in, which is told in as many rows."""
-    lead = ("now    ", "dim") if check is None else ("judged ", "bold")
+    lead = ("now    ", "dim") if check is None else ("check  ", "bold")
     problem = "" if check is None else check.problem
     if isinstance(judgement, str):
         sentence = _wrap_with_lead("      ", judgement, width, "dim") if judgement else []

@@ -42,9 +42,9 @@ def finish_sentence(finish: RaceFinish) -> str:
     if finish.reached:
         apart = ", and the pair was apart for too long" if finish.is_apart else ""
         bumps = counted(finish.collisions, "bump")
-        return f"The goal was reached after {finish.seconds:.2f} s, with {bumps}{apart}."
+        return f"Finished after {finish.seconds:.2f} s, with {bumps}{apart}."
     shortfall = f": {finish.shortfall}" if finish.shortfall else ""
-    return f"The goal was not reached in {finish.seconds:.0f} s{shortfall}."
+    return f"Not finished in {finish.seconds:.0f} s{shortfall}."
 
 
 def ending(level: GameLevel, finish: RaceFinish, width: int) -> list[Row]:

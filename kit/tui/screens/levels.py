@@ -71,8 +71,9 @@ MAP_WIDTH: Final = 84
 NOTES: Final = (
     ("B S G M R", "bronze, silver, gold, master, record: each driver has a ladder"),
     ("*", "a star for an extra rule that a drive has kept:"),
-    ("", "touched nothing, never stood still, one sensor, few lines,"),
-    ("", "few training steps"),
+    ("", "no bump, no stop, one sensor, few lines, few training steps"),
+    ("belt", "of a world: white for a first medal, yellow for one on each level;"),
+    ("", "green, blue: silver on half, on all; brown, black: gold likewise"),
     ("bump", "back to the start, and all targets are to be reached again"),
     ("side by side", "a pair that is apart for longer gets bronze at best"),
     ("locked", "opens after the level before it, or its lesson; on the map ( )"),
@@ -668,7 +669,7 @@ class LevelsScreen(RowsScreen[None]):
         if reference is not None and recordings:  # first it is driven, then the reference is shown
             recordings["reference"] = reference
         if not recordings:
-            text = "w replays drives, and of this level there is none yet that reached the goal. Enter drives it."
+            text = "w replays drives, and of this level none has finished yet. Enter drives it."
             self.app.push_screen(MessageDialog("Nothing to replay yet", text))
             return
         choices = [PickerItem(name, name, "") for name in recordings]

@@ -116,7 +116,7 @@ def test_poses_that_were_changed_prove_nothing(
     [
         ({"place": "maze", "case": "maze"}, "maze"),
         ({"case": "other"}, "other"),
-        ({"level": "the-nurse"}, "the-nurse"),
+        ({"level": "follow-the-nurse"}, "follow-the-nurse"),
         ({"step_size": 0.02}, "0.02"),
         ({"models": ((0, ("other",)),)}, "models"),
         ({"inputs": (Input(0, "move_model", ("serp", [3.0, 1.9, 0.0])),)}, "keys"),

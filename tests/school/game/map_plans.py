@@ -20,7 +20,7 @@ MAP_PROGRAM: Final = Path(__file__).with_name("map_program.py")
 CLEARANCE, WIDE_CLEARANCE, WALL_PRICE = 0.22, 0.3, 8.0
 """Ways of a robot keep so far from walls [m] where they can, those of a tricycle and among carts farther."""
 LANES: Final = {
-    "lawn": [
+    "every-tile": [
         (0.62, 0.5),
         (0.62, 1.1),
         (0.28, 1.25),

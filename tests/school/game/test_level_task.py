@@ -62,6 +62,6 @@ def test_what_a_level_has_of_its_own_is_in_the_training(tmp_path: Path) -> None:
     )
     low = task_of(find_level("low-battery"), tmp_path)
     assert low.route(low.map_cases()[0][1]) == ((3.85, 2.25), (0.6, 0.45))
-    nurse = BatchEnv(task_of(find_level("the-nurse"), tmp_path), 1)
+    nurse = BatchEnv(task_of(find_level("follow-the-nurse"), tmp_path), 1)
     nurse.reset()
     assert nurse.obstacle_poses(0)[0, :2] == pytest.approx(nurse.state.target[0])

@@ -52,9 +52,10 @@ def test_every_level_has_a_reference_a_world_and_a_lesson() -> None:
     assert {level.world for level in LEVELS} == {world.id for world in all_worlds()}
     assert {level.opened_by_lesson for level in LEVELS} == set(lesson_names()), "each lesson opens a level"
     for level in LEVELS:
+        assert level.id == level.title.lower().replace(" ", "-"), "the name to type is the one in the list"
         for text in (level.skill, level.hint):
             assert text
-            assert len(text) <= 78
+            assert len(text) <= 73, "it stands on one row of a small screen"
         for text in (level.story, level.ending):
             assert text
             assert len(wrap(text, 78 - len(level.title))) <= 2, "it stands beside the title on a small screen"
@@ -117,7 +118,7 @@ def test_no_driver_has_gold_everywhere_and_every_level_has_a_rung_in_reach() -> 
 NEEDS_MORE_THAN_TIDINESS = (
     ("crossing", "rush-hour", "corridor-traffic"),  # what moves
     ("black-ice", "frozen-slalom"),  # braking
-    ("low-battery", "long-night"),  # docking
+    ("low-battery", "the-long-night"),  # docking
     ("lights-out",),  # exploring
 )
 
@@ -164,7 +165,7 @@ class OdometryDriver(TidyDriver):
 @pytest.mark.long
 def test_who_believes_wheels_that_lie_gets_lost() -> None:
     """Where the wheels are true the same driver arrives."""
-    lying = find_level("lying-wheels")
+    lying = find_level("wheels-that-lie")
     true = replace(lying, conditions=replace(lying.conditions, wheel_error=0.0))
     finishes = [
         run_race(

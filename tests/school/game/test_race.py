@@ -373,7 +373,7 @@ def test_what_happens_after_the_time_is_over_is_not_counted() -> None:
 
 def test_a_pair_that_is_apart_gets_bronze_at_best() -> None:
     """One after the other both come to the target: as quick as it may be, on a level that asks them to stay side by side."""
-    pair = next(level for level in LEVELS if level.id == "two-chairs")
+    pair = next(level for level in LEVELS if level.id == "two-wheelchairs")
     here = replace(pair, goal=REACH_TARGET, targets=())
     for level, medal in ((here, Medal.BRONZE), (replace(here, abreast=0.0), Medal.RECORD)):
         scenario = level.find_scenario()

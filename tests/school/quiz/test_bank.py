@@ -109,3 +109,13 @@ def test_commands_within_the_words_are_verbs_of_the_kit() -> None:
 
 def test_sheets_lie_in_the_lessons_folders() -> None:
     assert {path.parent.name for path in lessons_folder().glob(f"*/{QUIZ_FILE}")} == set(BANK.lessons)
+
+
+@every_item
+def test_the_step_that_teaches_it_names_its_files(item: QuizItem) -> None:
+    dialogue = asked(item)
+    dialogue.say_not_sure()
+    figure = dialogue.figure()
+    assert figure is not None
+    told = "".join(getattr(block, "text", "") for block in figure.blocks)
+    assert not re.search(r"\{(file|folder)\}", told)

@@ -188,7 +188,7 @@ def test_a_check_moves_no_row_of_a_puzzle(challenge: Challenge, width: int) -> N
     for shown in (after, failed):
         places = [[at for at, each in enumerate(rows) if drawn in each] for rows in (before, shown)]
         assert places[0] == places[1]
-        assert [each.find("judged ") for each in shown if "judged " in each] == [
+        assert [each.find("check  ") for each in shown if "check  " in each] == [
             each.find("now  ") for each in before if "now  " in each
         ]
 

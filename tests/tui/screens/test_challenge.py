@@ -83,7 +83,7 @@ def test_a_challenge_is_opened_answered_and_rewarded(journal: ProgressJournal, t
         await seen(pilot, "no medal")  # the naive answer
         file.write_text(best_moves(FIRST.task))
         await seen(pilot, "gold (new)")  # saving it checks it
-        await seen(pilot, "naive answer")
+        await seen(pilot, "best answer")
         await seen(pilot, f"next   {SECOND.title}")
         await pilot.press("c")
         await until(
@@ -182,7 +182,7 @@ def test_a_check_of_a_puzzle_that_is_not_solved_says_so(journal: ProgressJournal
         await seen(pilot, FIRST.story[:40])
         assert not any("judged" in line for line in rows(pilot))
         await pilot.press("right", "c")
-        await seen(pilot, "judged . no medal")
+        await seen(pilot, "check  . no medal")
         await pilot.press("escape")
 
     visit(scene, journal, tmp_path)
@@ -219,7 +219,7 @@ def test_the_editor_opens_the_answers_file(
         await pilot.press("e")
         await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog), "what went wrong")
         await pilot.press("escape")
-        await seen(pilot, "the shortest way is paid")  # what was saved is checked
+        await seen(pilot, "the shortest way has")  # what was saved is checked
 
     visit(scene, journal, tmp_path)
     assert opened == [answer_file(tmp_path, FIRST, "moves.txt")]

@@ -213,7 +213,7 @@ def test_a_program_is_edited_while_it_drives_and_drives_again_if_it_is_another_o
         assert drive._referee is referee, "nothing was changed"
         await pilot.press("e")
         await until(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen), "the end")
-        await seen(pilot, "The goal was reached")
+        await seen(pilot, "Finished after")
 
     with ProgressJournal(workspace.folder) as journal:
         driven = ControllerFile("mine", program, "")

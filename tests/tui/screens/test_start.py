@@ -187,7 +187,7 @@ def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) 
 @pytest.mark.parametrize(
     ("key", "wanted", "back"),
     [("3", "random_walk", "backspace"), ("4", "stars", "escape"), ("5", "No trainings yet", "escape"),
-     ("6", "What is asked", "escape"), ("7", "The twelve ideas", "escape"), ("8", "highest degree", "escape"), ("9", "export your progress", "escape"), ("l", "Nobody is entered", "escape")],
+     ("6", "What is asked", "escape"), ("7", "The twelve ideas", "escape"), ("8", "highest education", "escape"), ("9", "export your progress", "escape"), ("l", "Nobody is entered", "escape")],
     ids=[item.name for item in MENU[2:]],
 )  # fmt: skip
 def test_every_line_of_the_menu_opens_and_comes_back(house: House, key: str, wanted: str, back: str) -> None:

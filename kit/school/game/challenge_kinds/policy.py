@@ -77,7 +77,7 @@ class PolicyTask(ChallengeTask):
     def prices(self) -> str:
         """What is paid, and how slippery the floor is, in one line."""
         slips = f", a move slips to each side with {self.slip:.0%}" if self.slip else ""
-        return f"G pays 1, X takes 1, a step {self.step_pay:g}; discount {self.discount:g}{slips}."
+        return f"Reward: G 1, X -1, a step {self.step_pay:g}; discount {self.discount:g}{slips}."
 
     def naive_answer(self) -> str:
         return format_policy(self, naive_policy(self))
@@ -100,7 +100,7 @@ class PolicyTask(ChallengeTask):
             raise AnswerError(
                 "From S an episode may never end, and each of its steps costs: lead every cell to G."
             )
-        text = f"From S it is worth {value:.3f}; the shortest way is worth {naive:.3f}, and {best:.3f} is possible."
+        text = f"Return from S {value:.3f}; the shortest way has {naive:.3f}, and {best:.3f} is possible."
         return judge_return(text, value, naive, best)
 
     @property
@@ -313,7 +313,7 @@ class PolicyBoard(Board):
             if task.grid[cell[0]][cell[1]] == PIT:
                 signs[cell] = (PIT, "bad")
         signs[self._cursor] = (signs[self._cursor][0], "chosen")
-        worth = f"  worth {value_of(task, self._policy):.3f} from S, at {start[0]},{start[1]}"
+        worth = f"  return {value_of(task, self._policy):.3f} from S, at {start[0]},{start[1]}"
         return [
             *grid_rows(task.grid, signs, scale),
             row(),
@@ -329,7 +329,7 @@ class PolicyBoard(Board):
             cell: f"{value:.2f}" if math.isfinite(value) else "never"
             for cell, value in zip(cells, values, strict=True)
         }
-        return [figure_rows("worth of each square", self._task.grid, worth)]
+        return [figure_rows("return from each square", self._task.grid, worth)]
 
 
 KIND = PolicyTask

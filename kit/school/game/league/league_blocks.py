@@ -95,7 +95,7 @@ def rules_blocks(programme: Programme, words: LeagueWords) -> list[Block]:
     rules = [
         ("Races", f"{races}: {alone}") if races else None,
         ("Tag", f"{tag}: {together}") if tag else None,
-        ("Enter", words.enter),
+        ("Take part", words.enter),
         ("Opponents", f"{HOUSE} {words.opponent}" if programme.has_house else words.opponent),
         ("Then", f"{words.run} drives the matches; ratings follow from who beat whom. {words.watch}."),
     ]

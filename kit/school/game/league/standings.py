@@ -211,7 +211,7 @@ def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, Judge
         number = middle_drive(each.finishes)
         finish, remark = each.finishes[number], each.remarks[number] if each.remarks else ""
         if finish.reached:
-            bumps = ", touched something" if finish.collisions else ""
+            bumps = ", with a bump" if finish.collisions else ""
             orders.append(finish_order(finish))
             details.append(f"{finish.seconds:.2f} s{bumps}")
         else:
@@ -230,7 +230,7 @@ def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, Judge
         by = (
             f"by {abs(first[2] - second[2]):.2f} s"
             if first[1] == second[1]
-            else "only the winner touched nothing"
+            else "only the winner had no bump"
         )
     entrants = jobs[0].entrants[0], jobs[1].entrants[0]
     is_same = all(each.is_same_platform for each in judged)
