@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
+from click.core import ParameterSource
 
 from kit.cli import learning_options, messages, options, terminal_options
 from kit.cli.existing_path import ExistingPath
-from kit.cli.full_screen import run_screen
+from kit.cli.full_screen import run_screen, show_screen
 from kit.cli.shared_game import join_shared_game
 from kit.document.layout import lines_of
 from kit.learning.maps.batch_map import UnsupportedWorld
@@ -44,6 +45,7 @@ from kit.world.problems import WorldError
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
     from kit.tui.screens.training import TrainingScreen
+    from kit.tui.screens.trainings import TrainingsScreen
 
 
 PROGRESS_INTERVAL_S = 2.0
@@ -60,12 +62,12 @@ PROGRESS_INTERVAL_S = 2.0
 def watch_command(
     run: str | None, once: bool, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None
 ) -> None:
-    """Watch RUN (default: the last one): its curve, how its episodes end, the robot with its newest policy.
+    """Watch RUN (default: the last one, or with no runs the game hosted here): its curve, how its episodes end, the robot with its newest policy.
 
     Ctrl-C stops watching; the training continues. RUN can also be a game hosted on this machine with
     `kit game host`.
     """
-    if run is not None and not once and _is_hosted(run, workspace):
+    if not once and _is_hosted(run, workspace):
         join_shared_game(run, None, plays=False, plain=plain)
     with learning_options.explained_errors():
         found = find_run(learning_options.runs_folder(workspace), run)
@@ -77,8 +79,9 @@ def watch_command(
             open_training_screen(found, terminal)
 
 
-def _is_hosted(name: str, workspace: Path | None) -> bool:
-    """Whether a game of that name is hosted, and no training has it."""
+def _is_hosted(name: str | None, workspace: Path | None) -> bool:
+    """Whether a game of that name is hosted, and no training has it; without a name, whether one is hosted and there are no
+    trainings."""
     try:
         find_game(games_folder(), name)
     except SharedGameError:
@@ -88,6 +91,19 @@ def _is_hosted(name: str, workspace: Path | None) -> bool:
     except RunError:
         return True
     return False
+
+
+def _names_settings() -> bool:
+    """Whether options were given that only a task's training has a use for."""
+    context, of_screens = click.get_current_context(), ("workspace", "plain", "glyphs", "color")
+    given = (context.get_parameter_source(each) for each in context.params if each not in of_screens)
+    return any(source is ParameterSource.COMMANDLINE for source in given)
+
+
+def _trainings_screen(app: KitApp, workspace: Path | None) -> TrainingsScreen:
+    from kit.tui.screens.trainings import TrainingsScreen
+
+    return TrainingsScreen(app.kit_theme, learning_options.runs_folder(workspace))
 
 
 def open_training_screen(run: TrainingRun, terminal: TerminalDecision) -> None:
@@ -256,7 +272,7 @@ def command(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Train an agent for TASK in a separate process, and watch it.
+    """Train an agent for TASK in a separate process, and watch it. Without TASK, list the trainings on a full screen.
 
     Ctrl-C stops watching; the training continues, also if the connection drops. `kit watch` shows it again,
     `kit runs --stop` stops it.
@@ -298,6 +314,8 @@ def command(
             click.echo("\n".join(_list_settings(task, algo or "ppo", preset)))
             return
         if task is None:
+            if terminal is not None and not terminal.plain.value and not _names_settings():
+                show_screen(terminal, lambda app: _trainings_screen(app, workspace))
             raise click.UsageError(
                 "Which task? `kit train --list` lists them; `kit train turn` is the first."
             )

@@ -28,6 +28,7 @@ SCREENS = {
     "lesson": (("lesson", "1"), b"", "Predict"),
     "nodes": (("play", "simple"), b"n", "static_laser"),
     "form": (("form",), b"", "highest education"),
+    "trainings": (("train",), b"", "Choose a task"),
 }
 """By name: the command, keys after its first picture, and words that are on the screen then."""
 

@@ -36,7 +36,7 @@ def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(kit: Open, tmp_p
     shows(host, "kit game guest first_drive")
     guest = kit("game", "guest", "first-drive", "--name", "Ben")
     shows(guest, "you against Ada")
-    spectator = kit("watch", "first-drive")
+    spectator = kit("watch")  # the only game, and there are no trainings
     told = kit("watch", "first-drive", "--plain")
     for terminal in (host, guest, spectator):
         shows(terminal, "0 targets")  # it has begun
