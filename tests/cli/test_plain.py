@@ -213,7 +213,7 @@ def test_a_level_that_is_driven_line_by_line_says_how_far_its_goal_is(tmp_path: 
     result = CliRunner().invoke(main, arguments, input=lines)
     assert result.exit_code == 0, result.output
     begin, there, back = (
-        result.output.index(each) for each in ("0 of 2 targets", "1 of 2 targets", "goal reached after")
+        result.output.index(each) for each in ("0 of 2 targets", "1 of 2 targets", "finished after")
     )
     assert begin < there < back
     with ProgressJournal(tmp_path) as journal:
