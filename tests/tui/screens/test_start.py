@@ -228,7 +228,7 @@ def test_progress_says_what_was_passed(house: House) -> None:
         assert "kit progress export FILE" in text(pilot)
         assert text(pilot).index("the game") < text(pilot).index("exercises passed")
 
-    house.play(scene, (80, 60))
+    house.play(scene, (80, 75))
 
 
 def test_a_wide_screen_shows_what_was_won_in_the_game_beside_the_lessons(house: House) -> None:
