@@ -73,8 +73,8 @@ def still_in_reach(driver: DriverKind, reference: float, seconds: float, is_flaw
     """The medal that is still in reach while one drives, and until when."""
     medal = rung_in_reach(driver, reference, seconds, is_flawed)
     if medal is None:
-        return "no medal possible now"
-    return f"{medal.title} possible until {medal_time(medal, reference, driver):.2f} s"
+        return "no medal now"
+    return f"{medal.title} before {medal_time(medal, reference, driver):.2f} s"
 
 
 def world_levels(

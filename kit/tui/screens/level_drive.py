@@ -398,15 +398,15 @@ class LevelDrive(WatchScreen):
         right: list[str | tuple[str, str]] = [f"bumps {finish.collisions}  ", clock]
         if conditions.charge:
             right.insert(0, f"battery {max(0.0, referee.battery.charge):.1f} m  ")
+        if self._behind is not None:
+            behind = row((f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), f" to {PACE}  ")
+            if row_width(row(*left, *behind, *right)) + 2 <= width:
+                right = [*behind, *right]
         reference = reference_seconds(self._level) if self._level.has_medals else None
         if reference is not None and not self._is_over:
             reach = level_rows.still_in_reach(self._driver, reference, time_s, finish.is_flawed)
             if row_width(row(*left, *right)) + len(reach) + 4 <= width:
                 left.append((f"  {reach}", "dim"))
-        if self._behind is not None:
-            behind = row((f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), f" to {PACE}  ")
-            if row_width(row(*left, *behind, *right)) + 2 <= width:
-                right = [*behind, *right]
         return at_both_edges(row(*left), row(*right), width)
 
     def _end(self, session: Session) -> None:
