@@ -202,13 +202,17 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 @click.pass_context
 def daily(context: click.Context, controller: str | None, plain: bool) -> None:
     """Drive the level of the day, which is the same for everyone."""
-    from kit.school.game.daily import daily_level, streak, today
+    from kit.school.game.daily import daily_level, has_run, streak, today
 
     level = daily_level(today())
     click.echo(f"{level.title}. {level.hint}")
     with _open_journal(context.obj) as (journal, _):
         days = streak(journal.events(), today())
-    click.echo(f"{counted(days, 'day')} in a row." if days else "Finish it today to start a streak.")
+        has_begun = has_run(journal.events(subject=level.id), level)
+    if days:
+        click.echo(f"{counted(days, 'day')} in a row.")
+    elif not has_begun:
+        click.echo("Finish it today to start a streak.")
     if controller is None:
         context.invoke(play, level=level.id, plain=plain)
     else:

@@ -176,8 +176,8 @@ CONTROLS: Final = (
     Control(
         "an impostor's name while its holder renews",
         "kit/school/game/league/entries.py",
-        "    return not is_holder, status.st_ctime_ns, file.name\n",
-        "    return False, status.st_ctime_ns, file.name\n",
+        "    return not is_same, not is_holder, status.st_ctime_ns, file.name\n",
+        "    return not is_same, False, status.st_ctime_ns, file.name\n",
         "school/game/league/test_league.py::test_who_renews_an_entry_keeps_its_name",
     ),
     Control(

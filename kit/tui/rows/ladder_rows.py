@@ -24,6 +24,8 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
     >>> from kit.document.rows import row_text
     >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 15.0, 30))
     'B━━━━━━━━━━━●─────S──────G──MR'
+    >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 10.21, 30))
+    'B━━━━━━━━━━━━━━━━━S━━━━━━G━●MR'
     """
     shares = SHARES[driver]
     widest = math.log(shares[Medal.BRONZE])
@@ -31,13 +33,15 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
     def column(share: float) -> int:
         return round((width - 1) * (1.0 - min(math.log(max(share, 1.0)) / widest, 1.0)))
 
+    places = {medal: min(column(shares[medal]), width - 1 - (medal is not Medal.RECORD)) for medal in RUNGS}
     signs = ["─"] * width
-    for medal in RUNGS:
-        below_record = 0 if medal is Medal.RECORD else 1
-        signs[min(column(shares[medal]), width - 1 - below_record)] = MEDAL_SIGNS[medal]
+    for medal, place in places.items():
+        signs[place] = MEDAL_SIGNS[medal]
     if seconds is None or seconds > medal_time(Medal.BRONZE, reference, driver):
         return row(("".join(signs), "dim"))
     here = column(seconds / reference)
+    missed = [place for medal, place in places.items() if seconds > medal_time(medal, reference, driver)]
+    here = min([here, *(place - 1 for place in missed)])  # before a rung that was missed by a hair
     passed = "".join("━" if sign == "─" else sign for sign in signs[:here])
     return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
 

@@ -171,7 +171,8 @@ def starts_rows(finishes: Sequence[RaceFinish], counts: int) -> list[Row]:
         return []
     times = [f"{each.seconds:.2f} s" if each.reached else "-" for each in finishes]
     times = [f"[{time}]" if number == counts else time for number, time in enumerate(times)]
-    return [row((f"   {len(times)} starts  ", "dim"), "  ".join(times))]
+    told = "the first is the level's own; the middle drive, in [ ], counts"
+    return [row((f"   {len(times)} starts  ", "dim"), "  ".join(times)), row((f"   {told}", "dim"))]
 
 
 def opens_after(level: GameLevel) -> str:

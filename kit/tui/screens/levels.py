@@ -41,6 +41,7 @@ from kit.school.game.player_progress import (
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.game.starts import film_scenario
+from kit.school.lessons.shell_lines import shell_path
 from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
@@ -74,7 +75,8 @@ NOTES: Final = (
     ("", "no bump, no stop, one sensor, few lines, few training steps"),
     ("belt", "of a world: white for a first medal, yellow for one on each level;"),
     ("", "green, blue: silver on half, on all; brown, black: gold likewise"),
-    ("bump", "back to the start, and all targets are to be reached again"),
+    ("bump", "by hand back to the start, with all targets to be reached again;"),
+    ("", "a program or an agent drives on, without the star"),
     ("side by side", "a pair that is apart for longer gets bronze at best"),
     ("locked", "opens after the level before it, or its lesson; on the map ( )"),
 )
@@ -576,7 +578,7 @@ class LevelsScreen(RowsScreen[None]):
         }
         choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
         picked = await self.app.push_screen_wait(
-            Picker(f"Who drives? Yours are in {self._workspace.controllers}", choices)
+            Picker(f"Who drives? Yours are in {shell_path(self._workspace.controllers)}", choices)
         )
         if picked is not None:
             await self._drive(self.chosen.level, DriverKind.CONTROLLER, files[picked])

@@ -33,6 +33,8 @@ WAY_ON: Final = "Backspace takes letters back; fewer of them may find it."
 DELETING: Final = "Backspace delete, Esc back"
 COLUMNS_AROUND: Final = 7
 """Columns of the border, of the mark of the chosen line and of the scroll bar."""
+WIDEST_NAME: Final = 24
+"""Columns of the names; after a longer one its text begins later."""
 FILTER_HINT: Final = "type to filter"
 FILTERED_FROM: Final = 8
 """Lines from which on a list says that typing filters it."""
@@ -168,7 +170,7 @@ class Picker(Dialog[str | None]):
     def replace_choices(self, choices: Sequence[PickerItem]) -> None:
         """Shows these from now on, with what is typed and highlighted as it is."""
         self._choices = tuple(choices)
-        self._width = max((len(choice.name) for choice in choices), default=0) + 2
+        self._width = min(max((len(choice.name) for choice in choices), default=0), WIDEST_NAME) + 2
         longest = max((len(choice.text) for choice in choices), default=0) + self._width + COLUMNS_AROUND
         self._columns = max(LIST_WIDTH, min(longest, WIDEST))
         if self.is_mounted and self.is_attached:
@@ -217,6 +219,9 @@ class Picker(Dialog[str | None]):
 
     def _line(self, choice: PickerItem, *, is_chosen: bool) -> Text:
         """Name and text; what does not fit on a line stands below the text."""
-        lines = wrap(choice.text, max(20, min(self._columns, self.size.width) - COLUMNS_AROUND - self._width))
-        text = f"{choice.name:{self._width}}" + ("\n  " + " " * self._width).join(lines)
+        name = f"{choice.name}  ".ljust(self._width)
+        room = max(20, min(self._columns, self.size.width) - COLUMNS_AROUND - self._width)
+        lines = wrap(choice.text, room, first=" " * (len(name) - self._width))
+        lines[:1] = [each.lstrip() for each in lines[:1]]
+        text = name + ("\n  " + " " * self._width).join(lines)
         return Text.assemble("> " if is_chosen else "  ", (text, "reverse bold" if is_chosen else ""))

@@ -45,7 +45,7 @@ from kit.tui.rows.drive_end_rows import LEAST_CURVE_ROWS
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.screens import level_result
 from kit.tui.screens import levels as levels_module
-from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import (
@@ -316,6 +316,13 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
         assert (tmp_path / "desk" / "cards" / "first-drive.keys.txt").read_text().startswith("First drive")
         await pilot.press("escape")
         await pilot.pause()
+        await pilot.press("y", "question_mark")  # what is above it then is not covered by the card
+        await wait_until_shown(pilot, lambda: "A card to share" not in flat(pilot.app))
+        await pilot.app.workers.wait_for_complete()
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HelpDialog)
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: "moving picture:" in flat(pilot.app), lambda: flat(pilot.app))
         await pilot.press("enter")
 
         def is_next() -> bool:
