@@ -86,7 +86,18 @@ def _require_open(journal: ProgressJournal, level: GameLevel) -> None:
         messages.fail(f"{level.title} {opens_after(level)}. `kit game --plain` lists which levels are open.")
 
 
-@click.group(invoke_without_command=True)
+class GameGroup(click.Group):
+    """Takes what is no command for the level to play."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
+            args = ["play", *args]
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=GameGroup, invoke_without_command=True)
 @options.workspace
 @click.option("--plain", is_flag=True, help="Print the list as text instead of a full screen.")
 @click.pass_context

@@ -46,3 +46,12 @@ def test_the_maze_of_a_day_is_neither_driven_before_it_comes_nor_shown_before_it
     with ProgressJournal(tmp_path) as journal:
         begin_run(journal, of_today)
     assert "reference" in result_of(tmp_path, "replay", of_today.id).output
+
+
+def test_a_level_is_played_by_its_name_alone(tmp_path: Path) -> None:
+    assert 'did you mean "first-drive"?' in result_of(tmp_path, "frist-drive").output
+    by_name, by_command = (
+        result_of(tmp_path, *words) for words in (("first-drive",), ("play", "first-drive"))
+    )
+    assert by_name.output.splitlines()[0] == by_command.output.splitlines()[0]
+    assert "First drive" in by_name.output

@@ -140,7 +140,9 @@ class PlayScreen(WatchScreen):
             from kit.run.place_driver import PlaceDriver  # of no use to the first frame
 
             self._place_driver = driver = PlaceDriver(session, event.place)
-            session.drive_with(None)
+            self.host.post(
+                lambda session: session.drive_with(None)
+            )  # this is another thread than the world's
             self.driver_name = "to where you clicked"
             return driver
 

@@ -313,6 +313,8 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         if self._server is not None:
             self._server.close()
         if self._opponent is not None:
+            self._opponent.disconnect()  # or the world's thread would wait for a program that loops
+            self.host.close()
             self._opponent.close()
 
 

@@ -92,6 +92,29 @@ def test_a_game_that_waits_is_joined(tmp_path: Path, games: Path, monkeypatch: p
 
 
 @pytest.mark.long
+def test_a_game_against_a_program_that_loops_is_left_at_once(tmp_path: Path, games: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    workspace.controllers.mkdir(exist_ok=True)
+    (workspace.controllers / "endless.py").write_text(
+        "import rclpy\nfrom rclpy.node import Node\n\n\ndef loop():\n    while True:\n        pass\n\n\n"
+        "rclpy.init()\nnode = Node('endless')\nnode.create_timer(0.1, loop)\nrclpy.spin(node)\n"
+    )
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await choose(pilot, "against")
+        await until(pilot, lambda: "endless" in text(pilot), "the programs")
+        await pilot.press(*"endless", "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, SharedHostScreen), "the game")
+        screen = pilot.app.screen
+        assert isinstance(screen, SharedHostScreen)
+        await until(pilot, lambda: screen.state and screen.state.phase is SharedPhase.RUNNING, "the start")
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is not screen, "the list of levels")
+
+    on_the_levels(workspace, scene)
+
+
+@pytest.mark.long
 def test_tag_is_played_against_a_program_of_the_house(tmp_path: Path, games: Path) -> None:
     workspace = prepare_workspace(tmp_path / "home")
 

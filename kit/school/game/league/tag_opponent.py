@@ -67,8 +67,13 @@ class TagOpponent(Observer):
             self._plays = True
             self._session.runner.participants.append(process)
 
+    def disconnect(self) -> None:
+        """Stops waiting for the program; from any thread. Only ``close`` may follow."""
+        if (process := self._process) is not None:
+            process.disconnect()
+
     def close(self) -> None:
-        """Ends the program."""
+        """Ends the program; once nobody ticks any more, or in the thread that does."""
         self._stop()
         if self._process is not None:
             self._process.close()
