@@ -17,7 +17,7 @@ from kit.dialogue.dialogue import Dialogue, Panel
 from kit.dialogue.effects import Remark
 from kit.document.blocks import Block, Marked, Picture, Text, Tone, ToneText, labelled_table
 from kit.document.layout import Page, place, rows_of
-from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width
+from kit.document.rows import MARGIN, Row, at_both_edges, row, row_width, text_width
 from kit.inspection.sockets import sockets_folder
 from kit.run.scenario import find_scenario
 from kit.school.lessons.aside import has_easy_editor, plain_lines
@@ -41,7 +41,7 @@ from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.suspend import edit_aside, run_aside
 from kit.tui.theme import Theme
-from kit.tui.widgets.lesson_page import LessonContent, LessonPage, PageLayout, words_beside
+from kit.tui.widgets.lesson_page import LEAST_ASIDE, LessonContent, LessonPage, PageLayout, words_beside
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import TextRows
@@ -177,6 +177,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         """When its line began to move."""
         self._said_row = self._look_row = 0
         """Rows of the words in which what was said begins, and what was said last; 0: nothing was."""
+        self._code_width: tuple[tuple[str, int], int] = (("", 0), 0)
+        """Columns that the code of a step's text needs on a page, for which both are known."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -398,7 +400,26 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def _width(self) -> int:
         """Width of the words."""
         width = self.room.width - self._editor_width
-        return width if self._layout is PageLayout.STACKED else words_beside(width)
+        if self._layout is PageLayout.STACKED:
+            return width
+        dialogue, usual = self.dialogue, words_beside(width)
+        if dialogue.has_scene or dialogue.work is not None or dialogue.step.picture:
+            return usual
+        return max(usual, min(self._code_columns(width), width - LEAST_ASIDE))
+
+    def _code_columns(self, width: int) -> int:
+        """Columns that the step's words need for none of their lines of code to be broken, on a page of so many."""
+        key = self.dialogue.step.text, width
+        if self._code_width[0] != key:
+            rows = rows_of(self.dialogue.step_blocks(), Page(width, MARGIN))
+            code = (each for each in rows if any(text.strip() for text, _ in each))
+            needed = (
+                row_width(each)
+                for each in code
+                if all(style == Tone.CODE for text, style in each if text.strip())
+            )
+            self._code_width = key, max(needed, default=0) + 2 * MARGIN
+        return self._code_width[1]
 
     @property
     def _playback_rows(self) -> int:

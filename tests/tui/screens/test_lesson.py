@@ -608,6 +608,24 @@ def test_a_step_to_read_has_the_steps_beside_its_words(student: Student, size: t
 
 
 @pytest.mark.long
+def test_code_to_read_is_not_broken_where_the_screen_has_room(student: Student) -> None:
+    file = student.lesson / "lesson.yaml"
+    code = "self.create_subscription(LaserScan, 'static_laser', self.on_scan, 10)"
+    before = "      It goes round.\n"
+    assert before in file.read_text()
+    file.write_text(file.read_text().replace(before, f"{before}\n          {code}\n"))
+    read = next(each for each in read_lesson(student.lesson).steps if each.kind is StepKind.EXPLAIN)
+    student.goes_to(read.number)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, read.title)
+        assert any(code in line for line in rows(pilot)), text(pilot)
+        assert steps_row(pilot) <= 4
+
+    stage(student.screen, scene, size=(120, 35))
+
+
+@pytest.mark.long
 def test_a_passed_program_is_defended(student: Student, play: Play) -> None:
     student.goes_to(CORNER)
     assignment = student.lesson / "corner" / "assignment.yaml"
