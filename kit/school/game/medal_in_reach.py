@@ -24,8 +24,8 @@ class MedalInReach(NamedTuple):
     """The driver's best time so far [s]."""
 
     def describe(self) -> str:
-        """``Left turn, by hand: gold at 6.02 s``."""
-        return f"{self.level.title}, {self.driver.phrase}: {self.medal.title} at {self.asked:.2f} s"
+        """``gold on Left turn by hand, 6.02 s``."""
+        return f"{self.medal.title} on {self.level.title} {self.driver.phrase}, {self.asked:.2f} s"
 
 
 def medals_in_reach(levels: Sequence[LevelProgress]) -> list[MedalInReach]:
