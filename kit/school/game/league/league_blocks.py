@@ -75,11 +75,18 @@ def summary_blocks(standings: Standings, words: LeagueWords = COMMANDS) -> list[
 
 def _among_the_house(places: Sequence[Place], own: Place) -> Text:
     """How the only one that is entered stands among the programs of the house."""
-    above = [each for each in places if each.entry.is_house and each.rating.points > own.rating.points]
+    if not _has_played(own):
+        return Text(f"No match of {own.entry.name} has been driven yet.")
+    house = [each for each in places if each.entry.is_house and _has_played(each)]
+    above = [each for each in house if each.rating.points > own.rating.points]
     if not above:
         return Text(f"{own.entry.name} has left the programs of the house behind.", Tone.GOOD)
     gap = above[-1].rating.points - own.rating.points
     return Text(f"{own.entry.name} has {above[-1].entry.name} to beat next, {gap:.0f} points above.")
+
+
+def _has_played(each: Place) -> bool:
+    return each.won + each.drawn + each.lost > 0
 
 
 def rules_blocks(programme: Programme, words: LeagueWords) -> list[Block]:
@@ -126,11 +133,10 @@ def standings_table(standings: Standings) -> Table:
 
 def _place_cells(each: Place, count: int) -> tuple[Cell, ...]:
     """``count``: of those that take a place, among which the number is."""
-    number = "" if each.entry.is_house else f"{each.number} of {count}"
+    number = "" if each.entry.is_house or count < 2 else f"{each.number} of {count}"
     name = ToneText(each.entry.name, Tone.BOLD if each.entry.is_mine else Tone.PLAIN)
     rating = each.rating
-    has_played = each.won + each.drawn + each.lost > 0
-    points, interval = (rating.points, (rating.low, rating.high)) if has_played else (None, None)
+    points, interval = (rating.points, (rating.low, rating.high)) if _has_played(each) else (None, None)
     driver = each.entry.driver.phrase.removeprefix("by ")
     return number, name, driver, points, interval, each.won, each.drawn, each.lost
 
