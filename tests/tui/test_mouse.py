@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,9 @@ from textual import events
 from textual.pilot import Pilot
 from textual.widgets import OptionList
 
-from kit.controllers import prepare_workspace
+from kit.controllers import ControllerFile, prepare_workspace
 from kit.document.rows import Row, row
+from kit.run.session import Session
 from kit.school.lessons.lesson_dialogue import LessonDialogue
 from kit.school.progress import ProgressJournal
 from kit.school.quiz.quiz_dialogue import QuizDialogue
@@ -126,6 +128,34 @@ def test_a_click_chooses_a_level_and_another_opens_it(tmp_path: Path) -> None:
 
     with ProgressJournal(workspace.folder) as journal:
         stage(lambda theme: LevelsScreen(theme, journal, workspace), scene)
+
+
+@pytest.mark.long
+def test_a_click_on_the_floor_changes_the_world_in_its_own_thread(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In any other one the world may stand still for good."""
+    threads: list[threading.Thread] = []
+    drive_with = Session.drive_with
+
+    def noted(session: Session, controller: ControllerFile | None) -> None:
+        threads.append(threading.current_thread())
+        drive_with(session, controller)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, PlayScreen)
+        await until(pilot, lambda: screen.view is not None and screen.world.camera is not None, "the world")
+        monkeypatch.setattr(Session, "drive_with", noted)
+        assert screen.world.camera is not None
+        column, line = screen.world.camera.project(np.array((2.0, 1.5))).tolist()
+        await pilot.click(screen.world, offset=(int(column), int(line)))
+        await until(pilot, lambda: threads, "the program to be stopped")
+        live = screen.host._live
+        assert live is not None
+        assert threads == [live._thread]
+
+    stage(lambda theme: PlayScreen(theme, "simple", "teleop", folder=tmp_path, runs=tmp_path / "runs"), scene)
 
 
 async def turn(pilot: Pilot[None], words: str, *, down: bool) -> None:

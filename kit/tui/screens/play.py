@@ -140,9 +140,8 @@ class PlayScreen(WatchScreen):
             from kit.run.place_driver import PlaceDriver  # of no use to the first frame
 
             self._place_driver = driver = PlaceDriver(session, event.place)
-            self.host.post(
-                lambda session: session.drive_with(None)
-            )  # this is another thread than the world's
+            # This is not the world's thread, in which alone it may be changed.
+            self.host.post(lambda session: session.drive_with(None))
             self.driver_name = "to where you clicked"
             return driver
 
