@@ -171,8 +171,7 @@ def starts_rows(finishes: Sequence[RaceFinish], counts: int) -> list[Row]:
         return []
     times = [f"{each.seconds:.2f} s" if each.reached else "-" for each in finishes]
     times = [f"[{time}]" if number == counts else time for number, time in enumerate(times)]
-    told = "the first is the level's own start, the others are drawn; [ ] counts"
-    return [row((f"   {len(times)} starts  ", "dim"), "  ".join(times)), row((f"   {told}", "dim"))]
+    return [row((f"   {len(times)} starts  ", "dim"), "  ".join(times))]
 
 
 def opens_after(level: GameLevel) -> str:

@@ -403,7 +403,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         if self._layout is PageLayout.STACKED:
             return width
         dialogue, usual = self.dialogue, words_beside(width)
-        if dialogue.has_scene or dialogue.work is not None or dialogue.step.picture:
+        if dialogue.has_scene or dialogue.step.exercise is not None or dialogue.step.picture:
             return usual
         return max(usual, min(self._code_columns(width), width - LEAST_ASIDE))
 

@@ -317,7 +317,7 @@ class DriveResultScreen(ModalScreen[Wish]):
             said = f"Copied to the terminal's clipboard.\nThe card: {shell_path(card)}\nThe moving picture: {shell_path(film)}"
         except (OSError, ExportError) as error:
             said = f"It could not be saved: {error}"
-        if not self.is_current:  # a replay of the drive, or a dialog, is above it
+        if not self.is_active:  # a replay of the drive, or a dialog, is above it
             self._note = row((f" {said.splitlines()[-1]}", "dim"))
             self._show()
             return

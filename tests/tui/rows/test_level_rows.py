@@ -131,9 +131,8 @@ def test_a_locked_level_says_so() -> None:
 
 def test_where_a_program_did_not_arrive_is_no_time() -> None:
     reached, lost = RaceFinish(True, 6.0, 0), RaceFinish(False, 72.0, 0)
-    shown, told = map(row_text, starts_rows([reached, lost, lost, lost, reached], 1))
+    (shown,) = map(row_text, starts_rows([reached, lost, lost, lost, reached], 1))
     assert shown.split() == ["5", "starts", "6.00", "s", "[-]", "-", "-", "6.00", "s"]
-    assert "[ ]" in told
     assert row_text(starts_rows([lost] * 5, 0)[0]).split()[2:] == ["[-]", "-", "-", "-", "-"]
 
 

@@ -24,7 +24,7 @@ from kit.run.recording import Recording
 from kit.school.game import ghosts, leaderboard, references
 from kit.school.game.challenges import all_challenges
 from kit.school.game.daily import DAILY_PREFIX, daily_level, today
-from kit.school.game.drive_records import DriveRecord, record_drive
+from kit.school.game.drive_records import DriveRecord, record_drive, save_film
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import ExtraRule, offered_rules
@@ -283,7 +283,7 @@ def test_a_task_of_ones_own_is_driven_by_hand_as_a_level(progress: ProgressJourn
 
 @pytest.mark.long
 def test_a_drive_is_followed_by_its_result_and_the_next_level(
-    progress: ProgressJournal, tmp_path: Path
+    progress: ProgressJournal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         assert screen.chosen.level.id == "first-drive"
@@ -316,10 +316,19 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
         assert (tmp_path / "desk" / "cards" / "first-drive.keys.txt").read_text().startswith("First drive")
         await pilot.press("escape")
         await pilot.pause()
+        may_write = threading.Event()
+
+        def held(*given: object) -> Path:
+            may_write.wait(60.0)
+            return save_film(*given)  # type: ignore[arg-type]  # what it is called with
+
+        monkeypatch.setattr(level_result, "save_film", held)
         await pilot.press("y", "question_mark")  # what is above it then is not covered by the card
-        await wait_until_shown(pilot, lambda: "A card to share" not in flat(pilot.app))
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpDialog))
+        result = pilot.app.screen_stack[-2]
+        assert isinstance(result, DriveResultScreen)
+        may_write.set()
+        await wait_until_shown(pilot, lambda: "picture:" in row_text(result._note))
         assert isinstance(pilot.app.screen, HelpDialog)
         await pilot.press("escape")
         await wait_until_shown(pilot, lambda: "moving picture:" in flat(pilot.app), lambda: flat(pilot.app))
