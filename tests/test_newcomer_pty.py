@@ -91,9 +91,9 @@ def test_from_a_drawing_to_a_race(kit: Open, tmp_path: Path, monkeypatch: pytest
     menu.until(lambda: "A new training" in menu.text, "the form")
     for downs, name in ((0, b"ahead"), (2, b"q-learning"), (2, b"my_reward")):
         menu.send(b"\x1b[B" * downs + b"\r")
-        menu.until(lambda: "type to filter" in menu.text, "a list")
+        menu.until(lambda: "Enter confirm" in menu.text, "a list")
         menu.send(name + b"\r")
-        menu.until(lambda: "type to filter" not in menu.text, "the form again")
+        menu.until(lambda: "Enter confirm" not in menu.text, "the form again")
     menu.until(lambda: "my_reward.py" in menu.text and "q-learning" in menu.text, "all that was chosen")
     menu.send(b"t")
     menu.until(lambda: "steps/s" in menu.text or "finished" in menu.text, "the training", 120)

@@ -124,7 +124,7 @@ class Picker(Dialog[str | None]):
         with Vertical() as box:
             box.border_title = self._title
             box.border_subtitle = CHOOSING
-            yield FilterInput(placeholder=FILTER_HINT, select_on_focus=False)
+            yield FilterInput(placeholder=self._hint, select_on_focus=False)
             yield ChoiceList()
 
     def on_mount(self) -> None:
@@ -174,7 +174,7 @@ class Picker(Dialog[str | None]):
         longest = max((len(choice.text) for choice in choices), default=0) + self._width + COLUMNS_AROUND
         self._columns = max(LIST_WIDTH, min(longest, WIDEST))
         if self.is_mounted and self.is_attached:
-            self.query_one(Input).placeholder = FILTER_HINT if len(choices) >= FILTERED_FROM else ""
+            self.query_one(Input).placeholder = self._hint
             options = self.query_one(OptionList)
             self.query_one(Vertical).styles.width = self._columns
             if options.highlighted is not None:
@@ -182,6 +182,10 @@ class Picker(Dialog[str | None]):
             self._fill(self.query_one(Input).value)
             if self._is_entered:
                 self.on_input_submitted()
+
+    @property
+    def _hint(self) -> str:
+        return FILTER_HINT if len(self._choices) >= FILTERED_FROM else ""
 
     def _fill(self, name_filter: str) -> None:
         wanted = name_filter.casefold().split()

@@ -76,7 +76,7 @@ def test_an_agent_is_chosen_like_a_program_and_looked_into(
         await seen(pilot, "no agent drives")
         assert ("bumps" in text(pilot)) == has_figures
         await pilot.press("c")
-        await seen(pilot, "type to filter")
+        await seen(pilot, "Enter confirm")
         await pilot.press(*"mine", "enter")
         await seen(pilot, "probability of each action")
         await seen(pilot, "▶left")
@@ -85,11 +85,11 @@ def test_an_agent_is_chosen_like_a_program_and_looked_into(
         assert screen.agent_view is not None
         assert len(screen.agent_view.sight) == TaskSpec("turn").resolve().observation.scan_size
         await pilot.press("c")
-        await seen(pilot, "type to filter")
+        await seen(pilot, "Enter confirm")
         await pilot.press(*"parked", "enter")
         await seen(pilot, "This agent cannot drive here")
         await pilot.press("escape", "c")
-        await seen(pilot, "type to filter")
+        await seen(pilot, "Enter confirm")
         await pilot.press(*"forward", "enter")
         await seen(pilot, "no agent drives")
         await pilot.press("i")

@@ -298,7 +298,7 @@ def test_questions_are_chosen_by_the_titles_of_lessons(house: House) -> None:
 
     async def scene(pilot: Pilot[None]) -> None:
         await pilot.press("7")
-        await seen(pilot, "type to filter")
+        await seen(pilot, "Enter confirm")
         for _ in range(len(kit_bank().lessons) + 3):  # three lines stand above the lessons
             shown.update(
                 line.split("│")[1].strip(" >▁▂▃▄▅▆▇█") for line in rows(pilot) if line.count("│") == 2
