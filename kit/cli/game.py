@@ -13,6 +13,7 @@ import click
 
 from kit.cli import messages, opening, options, terminal_options
 from kit.cli.full_screen import show_levels, show_screen
+from kit.cli.lazy_group import NamesGroup
 from kit.cli.shared_game import guest, host
 from kit.controllers import find_controller, prepare_workspace
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
@@ -86,18 +87,7 @@ def _require_open(journal: ProgressJournal, level: GameLevel) -> None:
         messages.fail(f"{level.title} {opens_after(level)}. `kit game --plain` lists which levels are open.")
 
 
-class GameGroup(click.Group):
-    """Takes what is no command for the level to play."""
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
-            args = ["play", *args]
-        return super().resolve_command(ctx, args)
-
-
-@click.group(cls=GameGroup, invoke_without_command=True)
+@click.group(cls=NamesGroup, invoke_without_command=True)
 @options.workspace
 @click.option("--plain", is_flag=True, help="Print the list as text instead of a full screen.")
 @click.pass_context
@@ -155,6 +145,9 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
         is_practice = begin_run(journal, chosen)
         drive = _drive_line_by_line(chosen, opened_workspace)
         _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, [drive], is_practice=is_practice)
+
+
+command.taker = play
 
 
 @command.command("race")

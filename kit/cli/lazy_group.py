@@ -180,3 +180,18 @@ def _command_of(extension: Extension) -> click.Command:
     if isinstance(found, click.Command):
         return found
     raise UnusablePart(f"The verb {extension.name} of {extension.source} is no click command.")
+
+
+class NamesGroup(click.Group):
+    """A group that may also be given a name, such as a map's, which its command ``taker`` takes."""
+
+    taker: click.Command | None = None
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
+            taker = self.taker
+            assert taker is not None  # each such group has one
+            return taker.name, taker, args
+        return super().resolve_command(ctx, args)

@@ -16,6 +16,7 @@ from kit.cli import messages, options, terminal_options
 from kit.cli.dialogue import run_dialogue
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
+from kit.cli.lazy_group import NamesGroup
 from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
@@ -57,18 +58,7 @@ if TYPE_CHECKING:
     from kit.tui.screens.photo_corners import PhotoCornersScreen
 
 
-class MapsGroup(click.Group):
-    """A group whose command may also be a map's name, which is then shown."""
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
-            return "show", show, args
-        return super().resolve_command(ctx, args)
-
-
-@click.group(cls=MapsGroup, invoke_without_command=True)
+@click.group(cls=NamesGroup, invoke_without_command=True)
 @click.pass_context
 def command(ctx: click.Context) -> None:
     """List the maps, show one, or make one of your own.
@@ -123,6 +113,9 @@ def show(name: str, glyphs: str | None) -> None:
         _show_card(own or find_map(name), glyphs)
     except (UnknownMap, WorldError) as error:
         messages.fail(str(error))
+
+
+command.taker = show
 
 
 def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:

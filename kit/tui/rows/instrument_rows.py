@@ -37,6 +37,7 @@ HIGHEST_CHART: Final = 10
 """Rows of a chart below which nothing else stands."""
 MESSAGES: Final = "messages"
 """The title of the newest messages."""
+MOST_MESSAGES: Final = 8
 HISTORY_S: Final = 60.0
 SAMPLE_S: Final = 0.2
 """Seconds of the simulation that the charts of the past cover, and between two of their points."""
@@ -150,7 +151,7 @@ def _told(
     rows = with_charts(view, history, figures, size, highest)
     left = height - len(rows)
     if view.messages and left > 2:
-        shown = view.messages[-max(1, min(len(view.messages), 8, left - 1)) :]
+        shown = view.messages[-max(1, min(len(view.messages), MOST_MESSAGES, left - 1)) :]
         rows += [
             ruled_title(MESSAGES, width),
             *(each for record in shown for each in message_rows(record, width)),
@@ -176,7 +177,7 @@ def with_charts(
     """The figures, and below them the charts for which ``size``, columns and rows, has room, of at most ``highest`` rows."""
     width, height = size
     rows = [*figures]
-    messages = 1 + min(len(view.messages), 8) if view.messages else 0
+    messages = 1 + min(len(view.messages), MOST_MESSAGES) if view.messages else 0
     each_has = (height - len(rows) - messages) // CHARTS - 1
     high = min(highest, max(CHART_ROWS, each_has))
     for chart in _charts(view, history, width, high) if len(rows) + CHART_ROWS < height else ():
