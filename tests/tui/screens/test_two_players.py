@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -9,12 +10,16 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
+from kit.host.node_process import NodeProcess
+from kit.run.lockstep import Observer
 from kit.run.recording import load_recording
+from kit.run.session import Session
 from kit.school.game.levels import find_level
 from kit.school.game.references import reference_recording
 from kit.school.game.shared_sockets import SharedGameError, answering_games, find_game
 from kit.school.game.two_players import SharedMode, SharedPhase
 from kit.school.progress import ProgressJournal
+from kit.sim.simulation import Simulation
 from kit.tui.screens import two_players
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.levels import LevelsScreen
@@ -91,6 +96,17 @@ def test_a_game_that_waits_is_joined(tmp_path: Path, games: Path, monkeypatch: p
     assert asked == [(waiting, True)] * 2
 
 
+class PlayWatcher(Observer):
+    """Says when a program is about to be called; a view would come after its first call, which may be the last."""
+
+    def __init__(self, session: Session, plays: threading.Event) -> None:
+        self._session, self._plays = session, plays
+
+    def on_step(self, simulation: Simulation) -> None:
+        if any(isinstance(each, NodeProcess) for each in self._session.runner.participants):
+            self._plays.set()
+
+
 @pytest.mark.long
 def test_a_game_against_a_program_that_loops_is_left_at_once(tmp_path: Path, games: Path) -> None:
     workspace = prepare_workspace(tmp_path / "home")
@@ -107,7 +123,9 @@ def test_a_game_against_a_program_that_loops_is_left_at_once(tmp_path: Path, gam
         await until(pilot, lambda: isinstance(pilot.app.screen, SharedHostScreen), "the game")
         screen = pilot.app.screen
         assert isinstance(screen, SharedHostScreen)
-        await until(pilot, lambda: screen.state and screen.state.phase is SharedPhase.RUNNING, "the start")
+        plays = threading.Event()
+        screen.host.observe(lambda session: PlayWatcher(session, plays))
+        await until(pilot, plays.is_set, "the start")
         await pilot.press("escape")
         await until(pilot, lambda: pilot.app.screen is not screen, "the list of levels")
 
