@@ -479,7 +479,7 @@ def _record_drive(
     from kit.school.game.drive_records import record_drive
     from kit.school.game.player_progress import BY_HAND
     from kit.school.game.references import reference_seconds
-    from kit.tui.rows.drive_end_rows import REPLACES, RUN_OF_THE_DAY
+    from kit.tui.rows.drive_end_rows import REPLACES, RUN_OF_THE_DAY, how_it_ended
     from kit.tui.rows.ladder_rows import ladder_rows
     from kit.tui.rows.level_rows import starts_rows
 
@@ -488,14 +488,10 @@ def _record_drive(
     )
     finishes = [each for each, _ in drives]
     finish = finishes[record.counts]
+    for sentence in how_it_ended(finishes, record.counts, was_watched=False):
+        click.echo(f"{level.title}: {sentence}")
     for each in starts_rows(finishes, record.counts):
         click.echo(row_text(each))
-    if finish.failure is not None:
-        click.echo(f"The program stopped: {finish.failure}")
-    if finish.foul:
-        click.echo(f"It does not count: {finish.foul}.")
-    end = f"finished after {finish.seconds:.2f} s" if finish.reached else "not finished"
-    click.echo(f"{level.title}: {end}, {counted(finish.collisions, 'bump')}.")
     if record.is_shipped:
         click.echo("The kit's own controller drove: it demonstrates the level and earns nothing.")
     elif record.is_practice:

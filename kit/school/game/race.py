@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
+from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind
 from kit.host.private_folder import private_folder
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
@@ -70,6 +71,38 @@ class Battery:
             self.charge = self._conditions.charge
 
 
+class Wedge:
+    """How long driven robots have stood still while something touched one of them: no bump puts a program's robot back."""
+
+    def __init__(self, robots: Sequence[str]) -> None:
+        self._robots = robots
+        self._poses: list[Pose] = []
+        """Where they have stood since then."""
+        self._seconds = 0.0
+
+    @property
+    def is_stuck(self) -> bool:
+        return self._seconds >= STUCK_TIME
+
+    def on_step(self, simulation: Simulation) -> None:
+        poses = [simulation.pose(name) for name in self._robots]
+        if any(map(_have_moved, self._poses, poses)) or not any(map(simulation.is_touching, self._robots)):
+            self._seconds = 0.0
+        if not self._seconds:
+            self._poses = poses
+        self._seconds += simulation.step_size
+
+
+def _have_moved(before: Pose, after: Pose) -> bool:
+    """Whether a robot has moved or turned by more than a push against a wall moves it."""
+    turn = math.remainder(after.theta - before.theta, math.tau)
+    return math.dist(before[:2], after[:2]) > STUCK_M or abs(turn) > STUCK_RAD
+
+
+STUCK_TIME: Final = 5.0
+"""A drive ends when no driven robot has moved for this time while one touches something [s]."""
+STUCK_M, STUCK_RAD = 0.02, 0.05
+"""A robot that has moved less [m] and turned less [rad] has not moved."""
 NOT_MOVED: Final = "the robot never moved; a program moves it by a Twist that it publishes on cmd_vel"
 STANDING_SPEED: Final = 0.02
 """A robot slower than this stands still [m/s]."""
@@ -111,6 +144,8 @@ class RaceFinish:
     """Topics of the robots that the program listened to; None for a drive by hand."""
     has_stopped: bool = False
     """Whether a robot stood still between its first move and the end."""
+    is_stuck: bool = False
+    """Whether the drive ended because no robot moved any more while one touched something."""
     is_apart: bool = False
     """Whether two robots were side by side for less of it than the level asks."""
     shortfall: str = ""
@@ -147,6 +182,7 @@ class RaceReferee(Observer):
         self._metrics = MetricsRecorder.for_scenario(self._scenario)
         self.objective = Objective(self._level, self._scenario, self._step_size)
         self.battery = Battery(self._level.conditions, self._scenario.partners[0])
+        self._wedge = Wedge(self._scenario.partners)
         self._seconds = 0.0
         self._foul = ""
         self._has_moved = self._has_stopped = False
@@ -163,6 +199,7 @@ class RaceReferee(Observer):
             foul=self._foul,
             splits=self.objective.splits,
             has_stopped=self._has_stopped,
+            is_stuck=reached_s is None and self._wedge.is_stuck,
             is_apart=self.objective.is_apart,
             shortfall=self._shortfall if reached_s is None else "",
         )
@@ -173,9 +210,10 @@ class RaceReferee(Observer):
 
     @property
     def is_over(self) -> bool:
-        """Whether the goal is reached, a rule broken or the time over."""
+        """Whether the goal is reached, a rule broken, the time over or the robot stuck."""
         is_reached = self.objective.reached_s is not None
-        return is_reached or bool(self._foul) or self._seconds >= self._level.time_limit
+        is_at_its_end = self._seconds >= self._level.time_limit or self._wedge.is_stuck
+        return is_reached or bool(self._foul) or is_at_its_end
 
     def on_service(self, service: str, *arguments: Any) -> None:
         """Records a foul if a service that changes the world is called."""
@@ -207,6 +245,7 @@ class RaceReferee(Observer):
         self._has_stopped |= self._has_moved and not is_moving
         self._has_moved |= is_moving
         self.battery.on_step(simulation)
+        self._wedge.on_step(simulation)
         self.objective.on_step(simulation)
         if self.battery.is_empty and self.objective.reached_s is None:
             self._foul = "the battery was empty"

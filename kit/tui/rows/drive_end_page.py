@@ -12,7 +12,6 @@ from kit.render.encode import Encoder
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.school.game.starts import STARTS
 from kit.tui.rows import drive_end_rows
 from kit.tui.rows.level_card_rows import Company, level_card
 from kit.tui.rows.medal_rows import drawn_columns, medal_drawing, medal_size
@@ -70,6 +69,8 @@ class DriveEnd:
     ladder: Sequence[Row]
     rungs: Sequence[Row]
     """The ladder with a row for each rung."""
+    sentences: Sequence[str]
+    """How it ended."""
     starts: Sequence[Row]
     times: Sequence[Row]
     """Beside others, and by sectors."""
@@ -192,8 +193,7 @@ def _fixed(
 ) -> list[Row]:
     """Who drove and how it ended; with what came of it, where it pushes nothing off the screen."""
     width = min(WIDTH, width)
-    which = f"Of {STARTS} drives the middle one counts. " if told.starts else ""
-    sentence = broken(row(f" {which}{drive_end_rows.finish_sentence(told.finish)}"), width)
+    sentence = [line for each in told.sentences for line in broken(row(f" {each}"), width)]
     ending = drive_end_rows.ending(told.level, told.finish, width - MARGIN)
     earned = _earned(told, _width_beside_medal(told, height)) if earned is None else earned
     parts = (sentence, earned, told.times, told.ladder, told.won, ending)

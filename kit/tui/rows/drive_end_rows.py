@@ -17,7 +17,7 @@ from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.players_histogram import HistogramBin
-from kit.school.game.race import DriverKind, RaceFinish
+from kit.school.game.race import STUCK_TIME, DriverKind, RaceFinish
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import NO_STAR, STAR
@@ -44,7 +44,21 @@ def finish_sentence(finish: RaceFinish) -> str:
         bumps = counted(finish.collisions, "bump")
         return f"Finished after {finish.seconds:.2f} s, with {bumps}{apart}."
     shortfall = f": {finish.shortfall}" if finish.shortfall else ""
+    if finish.is_stuck:
+        return f"Stuck after {finish.seconds:.0f} s, touching something for {STUCK_TIME:.0f} s without moving{shortfall}."
     return f"Not finished in {finish.seconds:.0f} s{shortfall}."
+
+
+def how_it_ended(finishes: Sequence[RaceFinish], counts: int, *, was_watched: bool = True) -> list[str]:
+    """How a drive ended; of a program's drives first the one from the level's own start, which may have been watched, then
+    which of them counts and why."""
+    said = finish_sentence(finishes[counts])
+    if len(finishes) == 1:
+        return [said]
+    arrived = sum(each.reached for each in finishes)
+    first = f"{'You watched start 1' if was_watched else 'Start 1'}: {finish_sentence(finishes[0])}"
+    middle = f"Of {len(finishes)} starts {arrived} arrived. The middle result counts, "
+    return [first, middle + ("which is this one." if counts == 0 else f"that of start {counts + 1}: {said}")]
 
 
 def ending(level: GameLevel, finish: RaceFinish, width: int) -> list[Row]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final
 
@@ -12,8 +13,8 @@ from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
 from kit.school.game.medal import RUNGS, Medal, medal_time, rung_in_reach
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
-from kit.school.game.race import DriverKind, RaceFinish
-from kit.school.game.starts import STARTS
+from kit.school.game.race import STUCK_TIME, DriverKind, RaceFinish
+from kit.school.game.starts import SHIFT_M, SHIFT_RAD, STARTS
 from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_words
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
 
@@ -188,6 +189,16 @@ def before_it_goes_on(seconds: float) -> list[Row]:
     return [row((text, "bold")), row(" It goes on with your first key; r starts anew.")]
 
 
+PROGRAM_NOTES: Final = (
+    ("program, agent", "drives on after a bump, without the star; the drive ends when it"),
+    ("", f"is stuck: {STUCK_TIME:.0f} s in touch with something, without moving"),
+    ("starts", f"it drives from {STARTS}: the level's own, then others shifted by up to"),
+    (
+        "",
+        f"{100 * SHIFT_M[1]:.0f} cm and turned by up to {math.degrees(SHIFT_RAD[1]):.0f} degrees; the middle result counts",
+    ),
+)
+"""What is said of drives by programs and agents where keys are explained."""
 GIVES_UP: Final = row(
     (" This run counts for today.", "bold"), " Once more: Esc gives it up, r starts a practice run."
 )

@@ -112,7 +112,6 @@ class LevelDrive(WatchScreen):
     Leaves with ``next`` where the player wants the next level.
     """
 
-    help_notes = (LETTER_NOTES,)
     has_card = True
     screen_actions = ScreenActions(
         "level",
@@ -299,6 +298,11 @@ class LevelDrive(WatchScreen):
     def shows_program(self) -> bool:
         """One that drives the level; nobody reads the code that turns keys into speeds."""
         return self._driver is DriverKind.CONTROLLER
+
+    @property
+    def help_notes(self) -> tuple[tuple[tuple[str, str], ...], ...]:
+        notes = *super().help_notes, LETTER_NOTES
+        return notes if self._race_program is None else (*notes, level_rows.PROGRAM_NOTES)
 
     @property
     def program_note(self) -> str:

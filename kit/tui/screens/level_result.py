@@ -139,6 +139,7 @@ class DriveResultScreen(ModalScreen[Wish]):
             record,
             ladder,
             rungs,
+            drive_end_rows.how_it_ended(result.finishes or [finish], record.counts if result.finishes else 0),
             level_rows.starts_rows(result.finishes, record.counts),
             [
                 *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
@@ -290,7 +291,10 @@ class DriveResultScreen(ModalScreen[Wish]):
             self.dismiss("restart")
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("The end of a drive", self.screen_actions, without=self._unavailable))
+        notes = [level_rows.PROGRAM_NOTES] if len(self._result.finishes) > 1 else []
+        self.app.push_screen(
+            HelpDialog("The end of a drive", self.screen_actions, *notes, without=self._unavailable)
+        )
 
     def action_back(self) -> None:
         self.dismiss("back")

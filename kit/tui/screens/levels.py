@@ -75,8 +75,8 @@ NOTES: Final = (
     ("", "no bump, no stop, one sensor, few lines, few training steps"),
     ("belt", "of a world: white for a first medal, yellow for one on each level;"),
     ("", "green, blue: silver on half, on all; brown, black: gold likewise"),
-    ("bump", "by hand back to the start, with all targets to be reached again;"),
-    ("", "a program or an agent drives on, without the star"),
+    ("bump", "by hand back to the start, with all targets to be reached again"),
+    *level_rows.PROGRAM_NOTES,
     ("side by side", "a pair that is apart for longer gets bronze at best"),
     ("locked", "opens after the level before it, or its lesson; on the map ( )"),
 )

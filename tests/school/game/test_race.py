@@ -31,7 +31,14 @@ from kit.school.game.player_progress import (
     facts_of_program,
     level_progress,
 )
-from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, finish_order, race_controller
+from kit.school.game.race import (
+    STUCK_TIME,
+    DriverKind,
+    RaceFinish,
+    RaceReferee,
+    finish_order,
+    race_controller,
+)
 from kit.school.game.references import drive_reference
 from kit.school.game.starts import OWN_SEED
 from kit.school.lessons.reading import find_lesson, lesson_names
@@ -354,6 +361,26 @@ def test_a_bump_is_no_way_home() -> None:
         assert not referee.finish.reached
         assert referee.objective.progress == "0 of 2 targets"
         assert referee.finish.splits == ()
+
+
+def test_a_robot_that_is_pressed_against_a_wall_ends_the_drive_and_one_that_turns_there_does_not() -> None:
+    scenario = FIRST.find_scenario()
+    for turn in (0.0, 0.3):
+        with Session(scenario) as session:
+            referee = RaceReferee(FIRST, scenario)
+            session.runner.observers.append(referee)
+            for topic in session.command_topics(scenario.partners[0]):
+                session.runner.accept(topic, Twist(linear=Vector3(x=-0.5), angular=Vector3(z=turn)))
+            run_until(session.runner, ticks=1500)
+        assert referee.finish.collisions
+        assert referee.finish.is_stuck is referee.is_over is (turn == 0.0)
+        assert not referee.finish.reached
+    assert referee.finish.seconds > STUCK_TIME
+    with Session(scenario) as session:
+        referee = RaceReferee(FIRST, scenario)
+        session.runner.observers.append(referee)
+        run_until(session.runner, ticks=1500)
+    assert not referee.is_over, "standing in the open may be waiting"
 
 
 def test_what_happens_after_the_time_is_over_is_not_counted() -> None:

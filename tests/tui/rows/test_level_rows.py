@@ -11,6 +11,7 @@ from kit.school.game.levels import all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import GameSummary, LevelProgress, level_progress
 from kit.school.game.race import DriverKind, RaceFinish
+from kit.tui.rows.drive_end_rows import finish_sentence, how_it_ended
 from kit.tui.rows.level_map_rows import map_places, map_rows
 from kit.tui.rows.level_rows import (
     about,
@@ -139,3 +140,15 @@ def test_where_a_program_did_not_arrive_is_no_time() -> None:
 def test_a_letter_is_either_a_medal_or_a_ghost() -> None:
     ghosts = {letter for letter, _ in GHOST_LOOKS.values()}
     assert not ghosts & {sign for medal, sign in MEDAL_SIGNS.items() if medal is not Medal.NONE}
+
+
+def test_of_a_program_first_the_drive_that_was_watched_is_told_and_then_the_one_that_counts() -> None:
+    arrived, late, lost = RaceFinish(True, 6.0, 0), RaceFinish(True, 9.5, 1), RaceFinish(False, 36.0, 0)
+    assert how_it_ended([lost], 0) == [finish_sentence(lost)]
+    first, counts = how_it_ended([arrived, lost, late, lost, lost], 3)
+    assert first.endswith(finish_sentence(arrived))
+    assert counts.endswith(f"start 4: {finish_sentence(lost)}")
+    assert " 5 starts 2 arrived" in counts
+    first, counts = how_it_ended([late, arrived, arrived, lost, lost], 0)
+    assert first.endswith(finish_sentence(late))
+    assert finish_sentence(late) not in counts
