@@ -58,24 +58,31 @@ def floor_plan(
     return ["".join(line) for line in picture]
 
 
+def _samples(camera: Camera, places: FloatArray) -> tuple[IntArray, IntArray]:
+    """Rows and columns of the samples at places [m], (n, 2); the nearest ones of those outside."""
+    bounds, scale = camera.bounds, 2 * SAMPLES
+    rows = (bounds.top - places[:, 1]) / camera.cell_height * scale
+    columns = (places[:, 0] - bounds.left) / camera.cell_width * scale
+    last = camera.rows * scale - 1, camera.columns * scale - 1
+    return rows.astype(np.int64).clip(0, last[0]), columns.astype(np.int64).clip(0, last[1])
+
+
 def _sample(camera: Camera, x: float, y: float) -> tuple[int, int]:
     """Row and column of the sample at a place [m]."""
-    bounds, scale = camera.bounds, 2 * SAMPLES
-    row = int((bounds.top - y) / camera.cell_height * scale)
-    column = int((x - bounds.left) / camera.cell_width * scale)
-    return max(0, min(row, camera.rows * scale - 1)), max(0, min(column, camera.columns * scale - 1))
+    (row,), (column,) = _samples(camera, np.array([[x, y]]))
+    return int(row), int(column)
 
 
 def _crossed(walls: FloatArray, camera: Camera) -> BoolArray:
     """The samples that walls cross."""
     crossed = np.zeros((camera.rows * 2 * SAMPLES, camera.columns * 2 * SAMPLES), np.bool_)
     step = camera.cell_width / (4 * SAMPLES)
-    for x1, y1, x2, y2 in walls.tolist():
-        count = int(max(abs(x2 - x1), abs(y2 - y1)) / step) + 2
-        for x, y in zip(
-            np.linspace(x1, x2, count).tolist(), np.linspace(y1, y2, count).tolist(), strict=True
-        ):
-            crossed[_sample(camera, x, y)] = True
+    starts, ways = walls[:, :2], walls[:, 2:] - walls[:, :2]
+    counts = (np.abs(ways).max(axis=1, initial=0.0) / step).astype(np.int64) + 2
+    wall = np.repeat(np.arange(len(walls)), counts)
+    number = np.arange(len(wall)) - np.repeat(np.cumsum(counts) - counts, counts)
+    shares = number / (counts[wall] - 1)
+    crossed[_samples(camera, starts[wall] + shares[:, None] * ways[wall])] = True
     return crossed
 
 

@@ -144,6 +144,11 @@ class LevelProgress:
         return max(self.medals.values(), default=Medal.NONE)
 
     @property
+    def best_driver(self) -> DriverKind:
+        """The driver with the best medal, else one that has arrived, else by hand."""
+        return max(DriverKind, key=lambda kind: (self.medals.get(kind, -1), kind in self.best_times))
+
+    @property
     def star_count(self) -> int:
         """Stars of extra rules."""
         return len(self.rules)

@@ -16,7 +16,7 @@ GAP: Final = 4
 """Columns between two pictures, for the lines."""
 MOST_COLUMNS, LEAST_COLUMNS = 24, 12
 MOST_ROWS, LEAST_ROWS = 8, 3
-"""Most and fewest rows of a picture."""
+"""Most and fewest rows of a picture; where there are fewer, titles stand alone."""
 RIGHT, LEFT, UP, DOWN = 1, 2, 4, 8
 """Directions in which a line leaves a character."""
 
@@ -31,11 +31,12 @@ class LevelPlace:
     """Row of its title; the picture is below."""
     columns: int
     rows: int
-    """Rows of the picture."""
+    """Rows of the picture; 0 for a title alone."""
 
 
 def map_places(standings: Sequence[LevelProgress], width: int, height: int) -> tuple[LevelPlace, ...]:
-    """Places the levels of a world: each to the right of all that open it. Empty where there is no room for pictures."""
+    """Places the levels of a world: each to the right of all that open it, with a picture where there is room, else its title
+    alone. Empty where there is no room for titles."""
     depths: dict[str, int] = {}
     for each in standings:  # a level comes after those that open it
         before = [depths[name] for name in each.level.opened_by if name in depths]
@@ -45,14 +46,15 @@ def map_places(standings: Sequence[LevelProgress], width: int, height: int) -> t
     most = max((len(names) for names in by_depth), default=1)
     columns = min(MOST_COLUMNS, (width - 1 - GAP * (count - 1)) // count)
     rows = min(MOST_ROWS, (height + 1) // most - 2)
-    if columns < LEAST_COLUMNS or rows < LEAST_ROWS:
+    rows = rows if rows >= LEAST_ROWS else 0
+    pitch = rows + 2 if rows or 2 * most - 1 <= height else 1
+    if columns < LEAST_COLUMNS or most * pitch > height + 1 or most > height:
         return ()
-    used = most * (rows + 2) - 1
     places = []
     for depth, names in enumerate(by_depth):
-        top = (used - (len(names) * (rows + 2) - 1)) // 2
+        top = (most - len(names)) * pitch // 2
         places += [
-            LevelPlace(name, 1 + depth * (columns + GAP), top + number * (rows + 2), columns, rows)
+            LevelPlace(name, 1 + depth * (columns + GAP), top + number * pitch, columns, rows)
             for number, name in enumerate(names)
         ]
     return tuple(places)

@@ -102,7 +102,7 @@ def world_levels(
             medals.append((f"{MEDAL_SIGNS[medal]:<{width}}", MEDAL_STYLES[medal]))
         best = min(each.best_times.values(), default=None)
         reference = references.get(level.id)
-        driver = max(DriverKind, key=lambda kind: (each.medals.get(kind, -1), kind in each.best_times))
+        driver = each.best_driver
         bar = (
             ()
             if reference is None or not is_whole

@@ -53,10 +53,17 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings
-from kit.tui.rows.level_card_rows import Company, Rival, best_splits, level_card
+from kit.tui.rows.level_card_rows import level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.level_pictures import GHOST_LOOKS, ghost_driver, ghost_look, ghost_marks, ghost_paths
+from kit.tui.screens.level_pictures import (
+    GHOST_LOOKS,
+    company_of,
+    ghost_driver,
+    ghost_look,
+    ghost_marks,
+    ghost_paths,
+)
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish, edit_program
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
@@ -143,8 +150,7 @@ class LevelDrive(WatchScreen):
         self._level = level
         self._ghosts = tuple(ghosts)
         self._reference = next((each for each in self._ghosts if each.name == "reference"), None)
-        rivals = (Rival(ghost_look(each)[0], ghost_driver(each), each.seconds) for each in self._ghosts)
-        self._company = Company(tuple(rivals), best_splits(self._ghosts))
+        self._company = company_of(self._ghosts)
         self._ghost_paths = tuple(way for ghost in self._ghosts for way in ghost_paths(ghost))
         self._with_ghosts = True
         self._progress = journal

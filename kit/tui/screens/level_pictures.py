@@ -22,6 +22,7 @@ from kit.school.game.ghosts import REFERENCE, Ghost
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import DriverKind
 from kit.school.lessons.records import Lesson
+from kit.tui.rows.level_card_rows import Company, Rival, best_splits
 
 ROOM_FOR_THREE: Final = 100
 """Columns from which on three pictures stand beside each other."""
@@ -49,6 +50,12 @@ def ghost_driver(ghost: Ghost) -> str:
     """Who drove a ghost's drive, in words that go with its letter."""
     own = {driver.value: f"your best {driver.phrase}" for driver in DriverKind}
     return {REFERENCE: "the reference", **own}.get(ghost.name, ghost.name)
+
+
+def company_of(ghosts: Sequence[Ghost]) -> Company:
+    """What these add to a level's card: each with the letter on the map, and the best of one's own by sectors."""
+    rivals = (Rival(ghost_look(each)[0], ghost_driver(each), each.seconds) for each in ghosts)
+    return Company(tuple(rivals), best_splits(ghosts))
 
 
 def ghost_marks(ghosts: Sequence[Ghost], time_s: float) -> tuple[SceneMark, ...]:

@@ -17,7 +17,7 @@ from textual.containers import Horizontal
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
-from kit.document.rows import Row, at_both_edges, fitted, row, row_width, side_by_side
+from kit.document.rows import MARGIN, Row, at_both_edges, fitted, row, row_width, side_by_side
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
@@ -46,14 +46,15 @@ from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.ladder_rows import ladder_letters
-from kit.tui.rows.level_card_rows import COLUMN, best_splits, star_line, stars_and_sectors
+from kit.tui.rows.ladder_rows import ladder_letters, rung_rows
+from kit.tui.rows.level_card_rows import COLUMN, best_splits, level_card, star_line, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.rows.progress_marks import share_bar
+from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
-from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
+from kit.tui.screens.level_pictures import company_of, ghost_paths, picture_of, scene_of
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
@@ -65,10 +66,14 @@ if TYPE_CHECKING:
 
 ABOUT_ROWS: Final = 8
 """What is said of a level, and an empty row above the keys."""
-ABOUT_COLUMN: Final = 92
-"""The column from which on a level's card stands beside what is said of it, where there is room."""
 MAP_WIDTH: Final = 84
 """Columns of the list where the chosen level is shown beside it."""
+CARD_WIDTH: Final = 50
+"""Columns of the chosen level's card, which on a wide screen stands at the right of its map."""
+ROOM_FOR_CARD: Final = MAP_WIDTH + 36 + CARD_WIDTH
+"""Columns of the screen from which on it does."""
+CARD_PARTS: Final = ("stars", "rivals", "sectors")
+"""Of the card, below the rungs of each driver: the rest is said below the list."""
 NOTES: Final = (
     ("B S G M R", "bronze, silver, gold, master, record: each driver has a ladder"),
     ("*", "a star for an extra rule that a drive has kept:"),
@@ -123,13 +128,14 @@ class LevelsScreen(RowsScreen[None]):
     LevelsScreen {{ layout: vertical; }}
     LevelsScreen #heading {{ height: 1; }}
     LevelsScreen #middle {{ height: 1fr; }}
-    LevelsScreen #preview {{ display: none; }}
+    LevelsScreen #preview, LevelsScreen #card {{ display: none; }}
     LevelsScreen.-wide #map {{ width: {MAP_WIDTH}; }}
     LevelsScreen.-wide #preview {{ display: block; }}
+    LevelsScreen.-with-card #card {{ display: block; width: {CARD_WIDTH}; }}
     LevelsScreen.-wide.-challenge #map {{ width: 1fr; }}
     LevelsScreen.-wide.-challenge #preview {{ display: none; }}
     LevelsScreen #about {{ height: {ABOUT_ROWS}; }}
-    LevelsScreen.-challenge.-about-beside #about {{ display: none; }}
+    LevelsScreen.-about-beside #about {{ display: none; }}
     LevelsScreen #keys {{ height: 1; }}
     """
 
@@ -173,6 +179,7 @@ class LevelsScreen(RowsScreen[None]):
         with Horizontal(id="middle"):
             yield TextRows(id="map")
             yield self._preview
+            yield TextRows(id="card")
         yield TextRows(id="about")
         yield TextRows(id="keys")
 
@@ -260,9 +267,17 @@ class LevelsScreen(RowsScreen[None]):
         challenge = self.chosen_challenge
         self.set_class(challenge is not None, "-challenge")
         listed, about = self._level_rows() if challenge is None else self._challenge_rows(challenge)
+        if self._doing:
+            about = [*about[: ABOUT_ROWS - 1], self._doing_row()]
+        self.set_class(self._has_card, "-with-card")
+        if challenge is None:
+            self.set_class(self._has_card, "-about-beside")
+        if self._has_card:
+            listed = [*listed, *[row()] * (self._middle_rows - len(listed)), *about]
+            self._rows("card").show(self._card_beside())
         self._rows("map").show(listed)
         self._rows("about").styles.height = self._rows_of_about
-        self._rows("about").show([*about[: ABOUT_ROWS - 1], self._doing_row()] if self._doing else about)
+        self._rows("about").show(about)
         labels = {} if challenge is not None else {"open": "drive"}
         if self.size.width < ROOM_FOR_WORDS:
             labels |= SHORT_WORDS
@@ -311,18 +326,38 @@ class LevelsScreen(RowsScreen[None]):
             *map_rows(levels, self._map_places(), self._pictures, level.id),
         ]
         ghosts = self._known.get(level.id, ())
-        is_beside = self.size.width >= ABOUT_COLUMN + COLUMN
-        width = (ABOUT_COLUMN - 1 if is_beside else self.size.width) - 1  # beside the margin of the list
+        width = (MAP_WIDTH if self._has_card else self.size.width) - 1  # beside the margin of the list
         about = level_rows.about(self.chosen, ghosts, self._references[level.id], width)
-        about = [fitted(row(" ", *each), width + 1) for each in about]
-        if is_beside:
-            about = side_by_side(about, self._card_rows(self.size.width - ABOUT_COLUMN - 1), ABOUT_COLUMN)
-        return listed, about
+        return listed, [fitted(row(" ", *each), width + 1) for each in about]
+
+    @property
+    def _has_card(self) -> bool:
+        """Whether the chosen level's card stands beside its map."""
+        return self.size.width >= ROOM_FOR_CARD and self.chosen_challenge is None
+
+    def _card_beside(self) -> list[Row]:
+        """The card of the chosen level: the rungs of each driver and where one stands among them, the stars, who is raced there,
+        the sectors of one's best drive. Parts for which there is no room are left out whole."""
+        level, best, width = self.chosen.level, self.chosen.best_times, CARD_WIDTH - 2 * MARGIN
+        reference, company = self._references[level.id], company_of(self._known.get(level.id, ()))
+        ladders = [
+            [ruled_title("ladder", width, driver.phrase), *rung_rows(driver, reference, best.get(driver))]
+            for driver in DriverKind
+            if reference is not None
+        ]
+        parts = level_card(
+            level, DriverKind.KEYS, reference, self.chosen.rules, width, self.size.height, company
+        )
+        rows: list[Row] = []
+        for part in (*ladders, *(parts[name] for name in CARD_PARTS if name in parts)):
+            if len(rows) + len(part) <= self.size.height - ROWS_AROUND:
+                rows += [*(row(" " * MARGIN, *each) for each in part), row()]
+        return rows
 
     def _card_rows(self, width: int) -> list[Row]:
         """The chosen level's stars, and the sectors of one's best drive; none of a level without medals."""
         level = self.chosen.level
-        if not self.chosen.is_open or self._references[level.id] is None or width <= COLUMN:
+        if self._references[level.id] is None or width <= COLUMN:
             return []
         best = best_splits(self._known.get(level.id, ()))
         return stars_and_sectors(level, self.chosen.rules, best, width)
@@ -331,11 +366,12 @@ class LevelsScreen(RowsScreen[None]):
         """The card below the list, where it does not stand beside what is said of the level: its stars alone where there is no
         more room, none where there is none."""
         width, room = self._rows("map").size.width, self._rows_below_levels
-        if self.size.width >= ABOUT_COLUMN + COLUMN:
+        if self._has_card:
             return []
         rows = self._card_rows(width - 1)
         levels = self._in_world(self.chosen.level.world)
-        shares = not map_places(levels, width, room - 2) or map_places(levels, width, room - len(rows) - 1)
+        with_line, with_rows = (map_places(levels, width, room - left) for left in (2, len(rows) + 1))
+        shares = _richness(with_rows) >= _richness(with_line)
         if rows and len(rows) <= room and room > len(ExtraRule) and shares:
             return [*rows, row()]
         stars = star_line(self.chosen.level, self.chosen.rules)
@@ -404,14 +440,14 @@ class LevelsScreen(RowsScreen[None]):
     async def _draw_pictures(self) -> None:
         """The pictures of the chosen world's map, each in its turn."""
         for place in self._map_places():
-            picture = self._pictures.get(place.level)
-            if picture is None or (len(picture), len(picture[0])) != (place.rows, place.columns):
+            picture = self._pictures.get(place.level, ())
+            if place.rows and (len(picture), *map(len, picture[:1])) != (place.rows, place.columns):
                 level = next(each for each in self._levels if each.id == place.level)
                 glyphs = self._theme.terminal.glyphs.value
                 self._pictures[place.level] = await to_thread(
                     picture_of, level, place.columns, place.rows, glyphs
                 )
-        self._show()
+                self._show()
 
     def _in_world(self, world: str) -> list[LevelProgress]:
         return [each for each in self._found if each.level.world == world]
@@ -423,12 +459,13 @@ class LevelsScreen(RowsScreen[None]):
         if self.chosen_challenge is not None:
             return
         level = self.chosen.level
-        self._draw_pictures()
         if self.has_class("-wide"):
             if level.id not in self._scenes:
                 self._preview.clear()  # another level's map says nothing of this one
                 self._scenes[level.id] = await to_thread(scene_of, level)
+            self._preview.is_dim = not self.chosen.is_open
             self._preview.show(self._scene_with_ghosts(level))
+        self._draw_pictures()
         if level.id not in self._known and self.chosen.is_open:
             await self._prepare_ghosts(level)
             self._show()
@@ -713,3 +750,8 @@ class LevelsScreen(RowsScreen[None]):
         self._known.pop(level.id, None)
         self._read()
         self._load_ghosts()
+
+
+def _richness(places: Sequence[LevelPlace]) -> tuple[bool, bool]:
+    """Whether a map has places, and whether it has pictures."""
+    return bool(places), bool(places and places[0].rows)

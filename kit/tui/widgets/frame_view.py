@@ -36,12 +36,26 @@ class FrameView(Widget):
     ) -> None:
         super().__init__(id=id, classes=classes)
         self._palette = palette
+        self._is_dim = False
         self._frame: Frame | None = None
         self._strips: dict[int, Strip] = {}
         self._styles: dict[tuple[int, int], Style | None] = {}
 
     def on_mount(self) -> None:
         crop_left(self.screen)
+
+    @property
+    def is_dim(self) -> bool:
+        """Whether all of it is drawn dim: what it shows is not open yet."""
+        return self._is_dim
+
+    @is_dim.setter
+    def is_dim(self, is_dim: bool) -> None:
+        if is_dim != self._is_dim:
+            self._is_dim = is_dim
+            self._strips.clear()
+            self._styles.clear()
+            self.refresh()
 
     @property
     def frame(self) -> Frame | None:
@@ -134,7 +148,7 @@ class FrameView(Widget):
             color=_rich(foreground.color),
             bgcolor=_rich(background.color),
             bold=foreground.bold or None,
-            dim=foreground.dim or None,
+            dim=self._is_dim or foreground.dim or None,
         )
         if not self.app.native_ansi_color:
             style = self.rich_style + style

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from itertools import product
 
@@ -98,7 +99,25 @@ def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
 def test_there_is_no_map_where_there_is_no_room() -> None:
     standings = standings_of("hall")
     assert map_places(standings, 30, HEIGHT) == ()
-    assert map_places(standings, WIDTH, 8) == ()
+    assert map_places(standings, WIDTH, 3) == ()
+
+
+@pytest.mark.parametrize("world", [each.id for each in all_worlds()])
+@pytest.mark.parametrize("height", range(4, 12))
+def test_where_pictures_have_no_room_the_titles_alone_are_a_map(world: str, height: int) -> None:
+    standings = standings_of(world)
+    places = map_places(standings, WIDTH, height)
+    if places and not places[0].rows:
+        text = [row_text(each) for each in map_rows(standings, places, {}, "")]
+        assert len(text) <= height
+        for each in standings:
+            assert f"{each.level.title}" in "".join(text)
+    elif not places:
+        assert max(Counter(place.x for place in map_places(standings, WIDTH, 40)).values()) > height
+
+
+def test_a_map_without_places_has_no_rows() -> None:
+    standings = standings_of("hall")
     assert map_rows(standings, (), {}, "") == []
 
 

@@ -26,7 +26,7 @@ from kit.school.game.challenges import all_challenges
 from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.drive_records import DriveRecord, record_drive, save_film
 from kit.school.game.levels import GameLevel, all_worlds
-from kit.school.game.medal import Medal
+from kit.school.game.medal import Medal, medal_time
 from kit.school.game.player_progress import ExtraRule, offered_rules
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
@@ -194,6 +194,24 @@ def test_on_a_wide_screen_the_chosen_level_is_shown(progress: ProgressJournal, t
         assert len(pictures) == 2
 
     play(scene, progress, tmp_path / "desk", (160, 48))
+
+
+def test_a_locked_level_is_shown_dim_beside_its_rungs_and_stars(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        for is_open in (True, False):
+            screen._at = next(at for at, each in enumerate(screen._found) if each.is_open is is_open)
+            screen._load_ghosts()
+            level = screen.chosen.level
+            await wait_until_shown(pilot, lambda level=level: level.id in screen._scenes)
+            await wait_until_shown(pilot, lambda is_open=is_open: screen._preview.is_dim is not is_open)
+            card = " ".join(row_text(each) for each in screen._card_beside())
+            gold = medal_time(Medal.GOLD, screen._references[level.id], DriverKind.KEYS)
+            assert f"{gold:.2f} s" in card
+            assert ExtraRule.CLEAN.description(level) in card
+
+    play(scene, progress, tmp_path, (200, 50))
 
 
 @pytest.mark.long
