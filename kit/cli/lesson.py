@@ -20,7 +20,7 @@ from kit.controllers import find_controller, prepare_workspace
 from kit.document.blocks import Block, Text, Tone, labelled_table
 from kit.document.layout import lines_of
 from kit.extensions import folders
-from kit.plain_text import counted, escape_controls, quoted, suggestion
+from kit.plain_text import counted, escape_controls, quoted, suggestion, wrap
 from kit.render.world_text import describe_scene, scene_rows
 from kit.run.episode import run_until, when_failed
 from kit.run.recording import RecordingError, load_recording
@@ -228,7 +228,7 @@ def _edit(request: Edit) -> str:
         return f"No editor can be opened here. Edit {request.file} in another terminal; saving it checks it."
     try:
         if keys := keys_of_vi(os.environ, arguments):
-            click.echo(keys)
+            click.echo("\n".join(wrap(keys, WIDTH)))
             input("Enter opens it. ")
         subprocess.run(arguments, cwd=request.file.parent, check=False)
     except EOFError:

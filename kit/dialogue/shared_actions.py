@@ -64,7 +64,7 @@ _SHARED: Final = (
 
 _OF_SEVERAL: Final = (
     # of the lesson, whose line mode has them too
-    letter("edit_file", "e", "edit", "edit your file in $EDITOR or nano; saving tries it"),
+    letter("edit_file", "e", "edit", "edit your file in $EDITOR or nano, else as with ^E"),
     ScreenAction("editor", "Ctrl-E", "editor", "open or close the kit's own editor", (("ctrl+e", "editor"),), "^E"),
     ScreenAction("save_program", "Ctrl-S", "save", "save what is in the editor; it is used at once",
                  (("ctrl+s", "save_program"),), "^S"),

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import shlex
-import sys
 from pathlib import Path
 from typing import Any
 
 from textual.app import App, SuspendNotSupported
 
-from kit.school.lessons.aside import EDITORS, arguments_of, editor_arguments, keys_of_vi, run_here
+from kit.school.lessons.aside import EDITORS, arguments_of, editor_arguments, run_here
 from kit.tui.terminal import TerminalDecision
 
 
@@ -52,12 +51,6 @@ def edit_aside(app: App[Any], file: Path, line: int, terminal: TerminalDecision)
         return f"Neither $VISUAL nor $EDITOR names an editor, and {', '.join(EDITORS)} are not here. Edit {file} in a second terminal."
     try:
         with app.suspend():
-            if keys := keys_of_vi(os.environ, arguments):
-                assert sys.__stdin__ is not None  # a terminal has been lent
-                assert sys.__stderr__ is not None
-                sys.__stderr__.write(f"\n{keys}\nEnter opens it. ")
-                sys.__stderr__.flush()
-                sys.__stdin__.readline()
             run_here(
                 shlex.join(arguments), arguments, {**os.environ, **terminal.environment()}, file.parent, False
             )

@@ -56,9 +56,13 @@ def how_it_ended(finishes: Sequence[RaceFinish], counts: int, *, was_watched: bo
     if len(finishes) == 1:
         return [said]
     arrived = sum(each.reached for each in finishes)
-    first = f"{'You watched start 1' if was_watched else 'Start 1'}: {finish_sentence(finishes[0])}"
-    middle = f"Of {len(finishes)} starts {arrived} arrived. The middle result counts, "
-    return [first, middle + ("which is this one." if counts == 0 else f"that of start {counts + 1}: {said}")]
+    of_first = finish_sentence(finishes[0])
+    first = f"{'You watched start 1' if was_watched else 'Start 1'}: {of_first}"
+    which = f"that of start {counts + 1}"
+    ended = "which is this one." if counts == 0 else f"{which}: {said}"
+    if counts and said == of_first:
+        ended = f"{which}, which ended likewise."
+    return [first, f"Of {len(finishes)} starts {arrived} arrived. The middle result counts, {ended}"]
 
 
 def ending(level: GameLevel, finish: RaceFinish, width: int) -> list[Row]:
@@ -125,7 +129,9 @@ def lead_rows(leads: Sequence[float], seconds: float, width: int, room: int, enc
     """A curve of how far ahead of the reference a drive of ``seconds`` was, from its beginning to its end, in at most ``room``
     rows; none for fewer than ``LEAST_CURVE_ROWS``."""
     title = "ahead of the reference"
-    return _curve_rows(title, "s, below the dashes is behind", leads, seconds, width, room, Axes("s", goal=0.0), encoder)
+    return _curve_rows(
+        title, "s, below the dashes is behind", leads, seconds, width, room, Axes("s", goal=0.0), encoder
+    )
 
 
 def speed_rows(speeds: Sequence[float], seconds: float, width: int, room: int, encoder: Encoder) -> list[Row]:

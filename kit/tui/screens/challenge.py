@@ -41,10 +41,10 @@ from kit.tui.rows.key_rows import FOOTER_ROWS, bindings
 from kit.tui.rows.lesson_rows import checking
 from kit.tui.rows.medal_rows import medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
+from kit.tui.screens.file_editor import edit_file
 from kit.tui.screens.level_pictures import task_picture
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
-from kit.tui.suspend import edit_aside
 from kit.tui.widgets.program_colours import LANGUAGES, coloured_rows
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
@@ -72,7 +72,9 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     has_beside: ClassVar[bool] = True
     """Whether what the answer is about stands beside the page, where there is room."""
-    screen_actions = ScreenActions("challenge", ("check", "edit_file", "next", "help", "back"), ("scroll",))
+    screen_actions = ScreenActions(
+        "challenge", ("check", "edit_file", "next", "help", "back"), ("editor", "scroll")
+    )
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     ChallengeScreen #result { height: 0; }
@@ -199,7 +201,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     def _unavailable_actions(self) -> list[str]:
         return [
             *super()._unavailable_actions(),
-            *(["edit_file"] if self._file is None else []),
+            *(["edit_file", "editor"] if self._file is None else []),
             *(["next"] if self._following is None else []),
         ]
 
@@ -290,11 +292,15 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     # Keys
 
     def action_edit_file(self) -> None:
+        self._edit(is_here=False)
+
+    def action_editor(self) -> None:
+        self._edit(is_here=True)
+
+    def _edit(self, *, is_here: bool) -> None:
         """Opens the answer's file; what was saved is checked."""
-        if self._file is None or self._started_at is not None:
-            return
-        if problem := edit_aside(self.app, self._file, 1, self._theme.terminal):
-            self.app.push_screen(MessageDialog("No editor opened", problem))
+        if self._file is not None and self._started_at is None:
+            edit_file(self.app, self._file, self._theme.terminal, lambda: None, is_here=is_here)
 
     def action_next(self) -> None:
         if self._following is not None:

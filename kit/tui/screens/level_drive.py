@@ -56,6 +56,7 @@ from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.level_card_rows import level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.file_editor import edit_file
 from kit.tui.screens.level_pictures import (
     GHOST_LOOKS,
     company_of,
@@ -64,7 +65,7 @@ from kit.tui.screens.level_pictures import (
     ghost_marks,
     ghost_paths,
 )
-from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish, edit_program
+from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.world_view import FloorClicked
@@ -123,7 +124,7 @@ class LevelDrive(WatchScreen):
     screen_actions = ScreenActions(
         "level",
         ("drive_keys", "stop_robot", "restart", "edit_file", "pause", "speed", "help", "back"),
-        ("ghosts", "agent_view", "laser_map", "share", "drive_mode", "zoom", *VIEW_IDS, "quit"),
+        ("editor", "ghosts", "agent_view", "laser_map", "share", "drive_mode", "zoom", *VIEW_IDS, "quit"),
         drives=True,
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
@@ -506,8 +507,8 @@ class LevelDrive(WatchScreen):
     @property
     def _unavailable_actions(self) -> tuple[str, ...]:
         if self._race_program is None:
-            return "speed", "edit_file"
-        return "drive_keys", "stop_robot", *(() if self._may_edit else ("edit_file",))
+            return "speed", "edit_file", "editor"
+        return "drive_keys", "stop_robot", *(() if self._may_edit else ("edit_file", "editor"))
 
     @property
     def _may_edit(self) -> bool:
@@ -515,10 +516,16 @@ class LevelDrive(WatchScreen):
         return self._own_program is not None and not self._is_run_of_the_day
 
     def action_edit_file(self) -> None:
+        self._edit(is_here=False)
+
+    def action_editor(self) -> None:
+        self._edit(is_here=True)
+
+    def _edit(self, *, is_here: bool) -> None:
         """Opens the program that drives; once it is another one, it drives again."""
         program = self._own_program
-        if program is not None and self._may_edit and edit_program(self.app, program, 1, self._theme):
-            self.action_restart()
+        if program is not None and self._may_edit:
+            edit_file(self.app, program, self._theme.terminal, self.action_restart, is_here=is_here)
 
     def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""

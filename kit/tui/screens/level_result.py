@@ -6,14 +6,13 @@ import math
 import os
 from asyncio import to_thread
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar, Final, Literal, TypeAlias
+from typing import ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
 from textual import events, work
-from textual.app import App, ComposeResult
+from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.screen import ModalScreen
 
@@ -55,9 +54,9 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.rows.medal_rows import SMALL, drawn_columns, medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
+from kit.tui.screens.file_editor import edit_file
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
-from kit.tui.suspend import edit_aside
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView
@@ -105,7 +104,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     """What a drive earned, beside its map. A driving key that is still held does not close it."""
 
     screen_actions = ScreenActions(
-        "level result", ("next", "restart", "edit_file", "replay", "share", "help", "back")
+        "level result", ("next", "restart", "edit_file", "replay", "share", "help", "back"), ("editor",)
     )
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
@@ -246,7 +245,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     def _unavailable(self) -> list[str]:
         return [
             *([] if self._result.finish.reached else ["next"]),
-            *([] if self._result.program is not None else ["edit_file"]),
+            *([] if self._result.program is not None else ["edit_file", "editor"]),
             *([] if self._is_all_shown else ["replay"]),
         ]
 
@@ -282,13 +281,27 @@ class DriveResultScreen(ModalScreen[Wish]):
         self.dismiss("restart")
 
     def action_edit_file(self) -> None:
+        self._edit(is_here=False)
+
+    def action_editor(self) -> None:
+        self._edit(is_here=True)
+
+    def _edit(self, *, is_here: bool) -> None:
         """Opens the program that drove, where it failed if it did; once it is another one, it drives again."""
         program, failure = self._result.program, self._result.finish.failure
         if program is None:
             return
-        line = failure.line if failure is not None and failure.file == program.name else None
-        if edit_program(self.app, program, line or 1, self._theme):
-            self.dismiss("restart")
+        is_there = failure is not None and failure.file == program.name
+        line, problem = (failure.line or 1, failure.message) if failure is not None and is_there else (1, "")
+        edit_file(
+            self.app,
+            program,
+            self._theme.terminal,
+            self.action_restart,
+            line=line,
+            problem=problem,
+            is_here=is_here,
+        )
 
     def action_help(self) -> None:
         notes = [level_rows.PROGRAM_NOTES] if len(self._result.finishes) > 1 else []
@@ -329,21 +342,6 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._show()
         shown = [*(row(each) for each in rows), row(), *map(row, said.splitlines())]
         self.app.push_screen(MessageDialog("A card to share", shown))
-
-
-def edit_program(app: App[Any], program: Path, line: int, theme: Theme) -> bool:
-    """Opens the player's program in the editor; whether it is another one now."""
-    before = _content(program)
-    if problem := edit_aside(app, program, line, theme.terminal):
-        app.push_screen(MessageDialog("No editor opened", problem))
-    return _content(program) != before
-
-
-def _content(file: Path) -> bytes:
-    """Empty where it cannot be read."""
-    with suppress(OSError):
-        return file.read_bytes()
-    return b""
 
 
 def scene_of_drive(result: DriveResult) -> Scene:

@@ -49,7 +49,7 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
     screen_actions = ScreenActions(
         "puzzle",
         ("move_cursor", "mark_cell", "undo", "check", "next", "help", "back"),
-        ("restart", "switch_robot", "edit_file"),
+        ("restart", "switch_robot", "edit_file", "editor"),
         own=(
             letter("mark_cell", "Space", "mark", "mark the place of the cursor, or wait", name="space"),
             letter("switch_robot", "Tab", "other robot", "plan the other robot's way", name="tab", has_priority=True),
@@ -197,9 +197,9 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         self._board.switch()
         self._changed()
 
-    def action_edit_file(self) -> None:
+    def _edit(self, *, is_here: bool) -> None:
         self._write()
-        super().action_edit_file()
+        super()._edit(is_here=is_here)
 
     def on_unmount(self) -> None:
         self._write()

@@ -20,7 +20,7 @@ from kit.school.game.judgement import Judgement
 from kit.school.game.levels import CHALLENGES_WORLD
 from kit.school.game.medal import Medal
 from kit.school.progress import EventKind, ProgressJournal
-from kit.tui.screens import challenge as challenge_module
+from kit.tui.screens import file_editor
 from kit.tui.screens.challenge import ChallengeScreen
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.levels import LevelsScreen
@@ -211,7 +211,8 @@ def test_the_editor_opens_the_answers_file(
         file.write_text("r")
         return "no editor here"
 
-    monkeypatch.setattr(challenge_module, "edit_aside", edit)
+    monkeypatch.setenv("EDITOR", "some")
+    monkeypatch.setattr(file_editor, "edit_aside", edit)
 
     async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
         await pilot.press("enter")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import TextArea
 
 from kit.controllers import ControllerFile, find_controller, prepare_workspace
 from kit.document.rows import row
@@ -22,10 +23,11 @@ from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
 from kit.school.game.references import CommandPlayer
 from kit.school.game.starts import OWN_SEED
+from kit.school.lessons import aside
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.rows.drive_end_rows import finish_sentence
-from kit.tui.screens import level_result
+from kit.tui.screens import file_editor
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import DriveResultScreen
@@ -121,12 +123,13 @@ def test_a_program_that_is_edited_after_its_drive_drives_again_and_is_judged_as_
         file.write_text(next(contents))
         return ""
 
-    monkeypatch.setattr(level_result, "edit_aside", edit)
+    monkeypatch.setenv("EDITOR", "some")
+    monkeypatch.setattr(file_editor, "edit_aside", edit)
 
     async def scene(pilot: Pilot[None]) -> None:
         await until(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen), "the end")
         stopped = pilot.app.screen
-        await seen(pilot, "not yet")
+        await seen(pilot, "RuntimeError")
         await pilot.press("e")
         assert pilot.app.screen is stopped, "nothing was changed"
         await pilot.press("e")
@@ -201,7 +204,8 @@ def test_a_program_is_edited_while_it_drives_and_drives_again_if_it_is_another_o
         file.write_text(next(contents))
         return ""
 
-    monkeypatch.setattr(level_result, "edit_aside", edit)
+    monkeypatch.setenv("EDITOR", "some")
+    monkeypatch.setattr(file_editor, "edit_aside", edit)
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "sends no speed")
@@ -239,4 +243,44 @@ def test_a_drive_by_hand_has_no_program_to_edit(tmp_path: Path) -> None:
             lambda theme: LevelDrive(theme, find_level("first-drive"), [], journal, workspace),
             scene,
             size=(120, 35),
+        )
+
+
+def test_where_no_editor_is_named_the_kits_own_opens_and_what_is_saved_drives(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("EDITOR", "VISUAL"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(aside.shutil, "which", lambda name: name if name == "vi" else None)
+    workspace = prepare_workspace(tmp_path / "home")
+    program = workspace.controllers / "mine.py"
+    program.write_text(driving_program())
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "sends no speed")
+        drive = pilot.app.screen
+        assert isinstance(drive, LevelDrive)
+        for key, leave in (("e", "escape"), ("ctrl+e", "ctrl+e")):
+            referee = drive._referee
+            await pilot.press(key)
+            await until(pilot, lambda: isinstance(pilot.app.focused, TextArea), "the editor")
+            await pilot.press("enter", leave)
+            await until(pilot, lambda: pilot.app.screen is drive, "the drive")
+            assert drive._referee is referee, "nothing was saved"
+            await pilot.press(key)
+            await until(pilot, lambda: isinstance(pilot.app.focused, TextArea), "the editor")
+            await pilot.press("ctrl+s", leave)
+            await until(
+                pilot, lambda referee=referee: drive._referee is not referee, "the drive of what was saved"
+            )
+            await seen(pilot, "sends no speed")
+        assert program.read_text().startswith("\n\n"), "what was typed and not saved was there again"
+
+    with ProgressJournal(workspace.folder) as journal:
+        level, driven = find_level("first-drive"), ControllerFile("mine", program, "")
+        stage(
+            lambda theme: LevelDrive(
+                theme, level, [], journal, workspace, driver=DriverKind.CONTROLLER, program=driven
+            ),
+            scene,
         )

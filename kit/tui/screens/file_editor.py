@@ -1,0 +1,101 @@
+"""The kit's own editor in place of the whole screen; and which editor a file is opened in from a screen."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, ClassVar
+
+from textual.app import App, ComposeResult
+from textual.binding import BindingType
+from textual.screen import ModalScreen
+
+from kit.dialogue.actions import ScreenActions
+from kit.school.lessons.aside import has_easy_editor
+from kit.tui.rows.key_rows import bindings, key_row
+from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.suspend import edit_aside
+from kit.tui.terminal import TerminalDecision
+from kit.tui.widgets.program_editor import ProgramEditor, ProgramFile, ProgramFileError
+from kit.tui.widgets.text_rows import TextRows
+
+
+class FileEditorScreen(ModalScreen[None]):
+    """Edits one file; what is not saved when it is left is kept beside it."""
+
+    screen_actions = ScreenActions("file editor", ("save_program", "editor"))
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
+    DEFAULT_CSS = """
+    FileEditorScreen > ProgramEditor { width: 1fr; max-width: 100%; height: 1fr; }
+    FileEditorScreen > #keys { dock: bottom; height: 1; }
+    """
+
+    def __init__(self, program: ProgramFile, line: int, problem: str) -> None:
+        """``line``: where the cursor is put, from 1. ``problem``: what is wrong there; empty: nothing."""
+        super().__init__()
+        self._editor = ProgramEditor(program)
+        self._line, self._problem = line, problem
+
+    def compose(self) -> ComposeResult:
+        yield self._editor
+        yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        self.query_one("#keys", TextRows).show(
+            [key_row(("^S", "save"), ("Esc", "close"), ("^Z", "undo"), ("^Y", "redo"), ("^P", "find"))]
+        )
+        self.call_after_refresh(self._begin)
+
+    def _begin(self) -> None:
+        self._editor.area.focus()
+        self._editor.go_to_line(self._line)
+        if self._problem:
+            self._editor.show_problem(self._line, self._problem)
+
+    def action_save_program(self) -> None:
+        self._editor.save()
+
+    def action_editor(self) -> None:
+        self._editor.keep_draft()
+        self.dismiss()
+
+    def on_editor_left(self) -> None:
+        self.action_editor()
+
+
+def edit_file(
+    app: App[Any],
+    file: Path,
+    terminal: TerminalDecision,
+    edited: Callable[[], None],
+    *,
+    line: int = 1,
+    problem: str = "",
+    is_here: bool = False,
+) -> None:
+    """Opens a file in the editor that is named or shows its own keys, else in the kit's; ``edited`` is called at its end where
+    the file is another one then. ``line``, ``problem``: as of ``FileEditorScreen``. ``is_here``: in the kit's in any case."""
+    before = _content(file)
+
+    def look(_: None = None) -> None:
+        if _content(file) != before:
+            edited()
+
+    if not is_here and has_easy_editor(os.environ):
+        if said := edit_aside(app, file, line, terminal):
+            app.push_screen(MessageDialog("No editor opened", said))
+        look()
+        return
+    try:
+        app.push_screen(FileEditorScreen(ProgramFile(file), line, problem), look)
+    except ProgramFileError as error:
+        app.push_screen(MessageDialog("This file cannot be edited here", str(error)))
+
+
+def _content(file: Path) -> bytes:
+    """Empty where it cannot be read."""
+    with suppress(OSError):
+        return file.read_bytes()
+    return b""
