@@ -139,6 +139,20 @@ class SceneCells:
         left, bottom = self.origin
         return SceneBounds(left, bottom, left + columns * self.cell_size, bottom + rows * self.cell_size)
 
+    def state_at(self, x: float, y: float) -> CellState:
+        """What is known of the cell of a point [m].
+
+        >>> cells = SceneCells(np.array([[1, 2]], dtype=np.uint8), (0.0, 0.0), 0.5)
+        >>> cells.state_at(0.7, 0.1).name, cells.state_at(0.7, 0.6).name
+        ('OCCUPIED', 'OUTSIDE')
+        """
+        column = math.floor((x - self.origin[0]) / self.cell_size)
+        line = math.floor((y - self.origin[1]) / self.cell_size)
+        rows, columns = self.states.shape
+        if not (0 <= column < columns and 0 <= line < rows):
+            return CellState.OUTSIDE
+        return CellState(int(self.states[line, column]))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:

@@ -93,6 +93,8 @@ def ages(user: User, seconds: float) -> list[float]:
 @pytest.mark.long
 def test_the_picture_keeps_up_over_a_slow_link(connect: Connect) -> None:
     user = connect(30_000, 0.020, "play", "--seed", "2")
+    started = shown_clock(user)
+    user.until(lambda: shown_clock(user) != started, "a world that is compiled and runs")
     run_on(user, 2.0)
     measured = ages(user, 6.0)
     assert len(measured) > 25  # it moves: most tenths of a second are seen

@@ -18,7 +18,7 @@ from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import Row, at_both_edges, row, row_width
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
-from kit.render.scene import Scene, SceneMark
+from kit.render.scene import CellState, Scene, SceneMark
 from kit.run.laser_map import LaserMap, world_bounds
 from kit.run.recording import Recorder, Recording, RecordingError, save_recording
 from kit.run.scenario import Scenario
@@ -346,6 +346,8 @@ class LevelDrive(WatchScreen):
         if not self._with_ghosts:
             return replace(scene, marks=docks)
         marks = ghost_marks(self._ghosts, self.view.time_s)
+        if (seen := scene.cells) is not None and self._level.conditions.fog:  # a ghost shows nobody the way
+            marks = tuple(mark for mark in marks if seen.state_at(mark.x, mark.y) is CellState.FREE)
         paths = () if self._level.conditions.fog else self._ghost_paths
         return replace(scene, paths=(*paths, *scene.paths), marks=(*docks, *marks))
 

@@ -185,7 +185,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             panel.show(menu(*told))
 
     def on_resize(self) -> None:  # besides the base class's, which Textual calls too
-        self.call_after_refresh(self._show_menu)
+        self.call_after_refresh(self._show_menu if self._level_picture else self._fill_room)
 
     # Where the student stands
 
@@ -209,14 +209,24 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         overview = await loop.run_in_executor(self._reading, self._store.read_overview, tell_lessons)
         self._overview, self._is_outdated = overview, False
         self._news = overview.news or self._news
-        if overview.next_level is not None and self.has_class("-vast"):
-            self._level_picture = await loop.run_in_executor(
-                self._reading, _picture_of, overview.next_level, self._theme.terminal.glyphs.value
-            )
+        await self._draw_level_picture()
         if notice := self._store.take_notice():
             self.app.push_screen(MessageDialog("Your progress", notice))
         self._show()
         return overview
+
+    async def _draw_level_picture(self) -> None:
+        """Draws the next level, where there is room for it."""
+        level = None if self._overview is None else self._overview.next_level
+        if level is not None and self.has_class("-vast"):
+            self._level_picture = await get_running_loop().run_in_executor(
+                self._reading, _picture_of, level, self._theme.terminal.glyphs.value
+            )
+
+    @work(exclusive=True, group="picture")
+    async def _fill_room(self) -> None:
+        await self._draw_level_picture()
+        self._show_menu()
 
     def _show_lessons(self, lessons: StudentOverview) -> None:
         """Shows where to go on and whether today's maze was driven before the rest is known, which stays as it was."""

@@ -10,6 +10,7 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.render.scene import CellState
+from kit.school.game.ghosts import Ghost
 from kit.school.game.race import DriverKind
 from kit.school.progress import ProgressJournal
 from kit.tui.screens.level_drive import LevelDrive
@@ -48,6 +49,11 @@ def test_a_key_shows_the_robots_map_and_another_saves_it(tmp_path: Path) -> None
 def test_fog_shows_what_the_laser_has_seen_and_no_more(tmp_path: Path) -> None:
     workspace = prepare_workspace(tmp_path / "home")
     level = next(each for each in kit_levels() if each.conditions.fog)
+    start = level.find_scenario().starts[0]
+    ghosts = [
+        Ghost(name, 1.0, (np.array([[x, y, 0.0]]),), 0.01)
+        for name, (x, y) in (("reference", level.targets[0]), ("keys", (start.x + 0.3, start.y)))
+    ]
 
     async def scene(pilot: Pilot[None]) -> None:
         screen = pilot.app.screen
@@ -64,6 +70,9 @@ def test_fog_shows_what_the_laser_has_seen_and_no_more(tmp_path: Path) -> None:
         known = np.bincount(cells.states.ravel(), minlength=3) / cells.states.size
         assert known[CellState.OCCUPIED] > 0.0
         assert known[CellState.UNKNOWN] > 0.3
+        assert [mark.label for mark in screen._newest_scene().marks] == ["K"], "no ghost on unseen floor"
 
     with ProgressJournal(workspace.folder) as journal:
-        stage(lambda theme: LevelDrive(theme, level, [], journal, workspace, driver=DriverKind.KEYS), scene)
+        stage(
+            lambda theme: LevelDrive(theme, level, ghosts, journal, workspace, driver=DriverKind.KEYS), scene
+        )

@@ -246,6 +246,17 @@ def test_a_wide_screen_shows_what_was_won_in_the_game_beside_the_lessons(house: 
     house.play(scene, (200, 50))
 
 
+def test_a_window_that_grows_gets_the_next_levels_picture(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "today")
+        await pilot.resize_terminal(200, 50)
+        await seen(pilot, "next level")
+        wall = next(at for at, line in enumerate(rows(pilot)) if "next level" in line) + 1
+        await until(pilot, lambda: "▄▄▄" in rows(pilot)[wall][140:168], "the level's walls")
+
+    house.play(scene, (80, 24))
+
+
 @pytest.mark.long
 def test_a_damaged_journal_is_told_once(house: House) -> None:
     (house.workspace.folder / FILE).write_bytes(b"no database at all" * 100)
