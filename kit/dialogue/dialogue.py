@@ -73,6 +73,8 @@ class Panel:
 
     title: str
     blocks: tuple[Block, ...]
+    is_below: bool = False
+    """Whether it stands below what is asked where the others stand beside that."""
 
 
 class Dialogue:
@@ -113,7 +115,7 @@ class Dialogue:
 
     def panels(self) -> Sequence[Panel]:
         """What a screen shows to the right of the others where it is wide enough, else at its bottom, as many as there is room
-        for, the last one cut where it must be; line by line they are not said."""
+        for, the last one cut where it must be; line by line they are not said. At the bottom the first is the lowest."""
         return ()
 
     @property

@@ -147,7 +147,7 @@ class FormDialogue(Dialogue):
                 each.group_text or each.text for each in session.form.questions_in_phase(later)
             )
             told = (Text(each, Tone.DIM, lead="-", hang=2, is_tight=True) for each in asked)
-            shown.append(Panel(f"asked {PHASE_LABELS[later]}", tuple(told)))
+            shown.append(Panel(f"asked {PHASE_LABELS[later]}", tuple(told), is_below=True))
         return shown
 
     def _entry_of(self, number: int, question: SurveyQuestion) -> tuple[Block, ...]:

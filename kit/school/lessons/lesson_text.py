@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
+from kit.dialogue.dialogue import Panel
 from kit.document.blocks import Block, Choice, Choices, Code, Text, Tone
 from kit.plain_text import join_names
 from kit.results.grading_result import CriterionStatus
@@ -31,6 +32,13 @@ _WHERE: Final[Mapping[CommandKind, str]] = MappingProxyType(
         CommandKind.BESIDE: "In a second terminal (press a for how to open one), while a world runs:",
     }
 )
+
+
+def about_lesson(lesson: Lesson) -> Panel:
+    """What a lesson is about and what one can do after it."""
+    outcomes = (Text(each, lead="-", hang=2, is_tight=True) for each in lesson.outcomes)
+    title = f"lesson {lesson.number}, {lesson.title}"
+    return Panel(title, (Text(lesson.summary), *outcomes), is_below=True)
 
 
 def command_blocks(filled: Sequence[tuple[LessonCommand, str]]) -> list[Block]:

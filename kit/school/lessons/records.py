@@ -275,10 +275,15 @@ class Lesson:
     def exercises(self) -> tuple[Exercise, ...]:
         return tuple(step.exercise for step in self.steps if step.exercise is not None)
 
-    def scene_near(self, number: int) -> LessonScene | LearningScene | GraphScene | None:
-        """What moves in a step, else in the nearest one before it that has such a picture, else in the nearest one after it."""
+    def scene_near(
+        self, number: int, *, has_worlds: bool = True
+    ) -> LessonScene | LearningScene | GraphScene | None:
+        """What moves in a step, else in the nearest one before it that has such a picture, else in the nearest one after it.
+        ``has_worlds``: whether a world is such a picture, or only tables and messages are."""
         steps = sorted(self.steps, key=lambda step: (step.number > number, abs(step.number - number)))
-        return next((step.scene or step.playback_scene for step in steps if step.moves), None)
+        return next(
+            (scene for step in steps if (scene := (has_worlds and step.scene) or step.playback_scene)), None
+        )
 
     def step_subject(self, step: LessonStep) -> str:
         """The journal's subject for a step."""

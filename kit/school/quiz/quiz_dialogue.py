@@ -15,6 +15,7 @@ from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Choice, Choices, KeyLine, Marked, Picture, Text, Tone
 from kit.school.lessons.glossary import glossary_action, lesson_words
+from kit.school.lessons.lesson_text import about_lesson
 from kit.school.lessons.reading import find_lesson
 from kit.school.lessons.records import GraphScene, LearningScene, Lesson, LessonScene, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
@@ -60,6 +61,9 @@ KEPT: Final = (
     ("what comes back", "topics, after 1, 3, 7 and 21 days: kit quiz --today"),
 )
 ANSWERED: Final = "answered just now"
+REASONS: Final = "answered before, and why"
+MOST_EARLIER: Final = 6
+"""Answers that are listed with their reasons."""
 HOW_IT_GOES: Final = (
     Text(
         "Choose an answer, then say how sure you are. Only then is it recorded, and are you told whether it is right."
@@ -160,11 +164,11 @@ class QuizDialogue(Dialogue):
         )
         if item is None or self.is_over:  # the question that was answered last is still the item
             return known, comes_back, just_now
+        earlier = [each for each in answers if each.item != item.id][-MOST_EARLIER:]
+        reasons = answered_blocks(session.bank, earlier, has_reasons=True)
         last = (
             Panel(f"words of {lesson_reference(item.lesson)}", lesson_words(item.lesson))
             if self.stage is QuizStage.TOLD
-            else just_now
-            if session.session_answers
             else Panel("how it goes", HOW_IT_GOES)
         )
         return (
@@ -173,7 +177,23 @@ class QuizDialogue(Dialogue):
             Panel(CALIBRATION_HEADING.lower(), tuple(calibration_blocks(measure_calibration(answers)))),
             comes_back,
             *([last] if last.blocks else []),
+            *([Panel(REASONS, reasons, is_below=True)] if reasons else []),
+            *self._lesson_panels(item),
         )
+
+    def _lesson_panels(self, item: QuizItem) -> list[Panel]:
+        """What the lesson of a question is about, and where nothing of it moves, a picture of another step than the one that teaches
+        the answer."""
+        taught = self._taught_by(item)
+        if taught is None:
+            return []
+        lesson, step = taught
+        pictured = next((each for each in lesson.steps if each.picture and each is not step), None)
+        if pictured is None or self.scene_shown is not None:
+            return [about_lesson(lesson)]
+        title = f"lesson {lesson.number}, step {pictured.number}: {pictured.title}"
+        picture = Picture(tuple(pictured.picture.splitlines()))
+        return [about_lesson(lesson), Panel(title, (picture,), is_below=True)]
 
     def _taught_by(self, item: QuizItem) -> tuple[Lesson, LessonStep] | None:
         """The lesson and the step that teach the answer to a question."""
@@ -192,8 +212,7 @@ class QuizDialogue(Dialogue):
         taught = None if self.item is None or self.is_over else self._taught_by(self.item)
         if self.item is None or taught is None:
             return None
-        near = taught[0].scene_near(taught[1].number)
-        return None if isinstance(near, LessonScene) and not self.item.topic.has_worlds else near
+        return taught[0].scene_near(taught[1].number, has_worlds=self.item.topic.has_worlds)
 
     def figure(self) -> Panel | None:
         """Once the answer is told, the step that teaches it."""

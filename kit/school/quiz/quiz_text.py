@@ -39,7 +39,7 @@ VERDICTS: Final[Mapping[AnswerOutcome, str]] = {
     AnswerOutcome.NOT_SURE: "Good to know, and not counted as wrong. Option {} is right.",
     AnswerOutcome.BLANK: "Left blank. Option {} is right.",
 }
-CALIBRATION_HEADING: Final = "How sure you were, and how often right"
+CALIBRATION_HEADING: Final = "How sure, and how often right"
 CONFIDENCE_QUESTION: Final = "How sure are you?"
 CONFIDENCE_CHOICES: Final = tuple(CONFIDENCE_LABELS.items())
 _WORDS: Final = CellStyle.TEXT
@@ -157,7 +157,7 @@ def topic_map(bank: QuestionBank, answers: Iterable[QuizAnswer], current: QuizTo
             ">" if topic is current else "",
             ToneText(topic.label, Tone.BOLD if topic is current else Tone.PLAIN),
             _bar(each),
-            f"{each.right} of {each.total} right",
+            f"{each.right} of {each.total}",
         )
         for topic, each in counts.items()
     )
@@ -181,23 +181,26 @@ def round_blocks(session: QuizSession, number: int) -> tuple[Block, ...]:
     marks += ["."] * (max(number, session.question_count) - len(marks))
     if number > answered:
         marks[number - 1] = ">"
-    said = "+ right  x wrong  0 not sure  - blank"
-    if "*" in marks:
-        said = f"* answered before  {said}"
-    return Text(" ".join(marks), Tone.BOLD), Picture((said,), indent=0, tone=Tone.DIM, is_tight=True)
+    said = [*(["* answered before"] if "*" in marks else []), "+ right  x wrong  0 not sure  - blank"]
+    return Text(" ".join(marks), Tone.BOLD), Picture(tuple(said), indent=0, tone=Tone.DIM, is_tight=True)
 
 
-def answered_blocks(bank: QuestionBank, answers: Sequence[QuizAnswer]) -> tuple[Block, ...]:
-    """The questions that were answered, the last one first, each with the right answer where another one was given."""
+def answered_blocks(
+    bank: QuestionBank, answers: Sequence[QuizAnswer], *, has_reasons: bool = False
+) -> tuple[Block, ...]:
+    """The questions that were answered, the last one first, each with the right answer where another one was given, and perhaps
+    with the reason."""
     items, blocks = bank.items_by_id(), list[Block]()
     for each in reversed(answers):
         item = items.get(each.item)
         if item is None:
             continue
         blocks.append(Text(item.question, Tone.DIM, lead=MARKS[each.outcome], hang=2, is_tight=True))
-        if each.outcome is not AnswerOutcome.RIGHT:
-            right = item.options[item.right_option].text
-            blocks.append(Text(right, lead=MARKS[AnswerOutcome.RIGHT], indent=2, hang=2, is_tight=True))
+        right = item.options[item.right_option]
+        if has_reasons or each.outcome is not AnswerOutcome.RIGHT:
+            blocks.append(Text(right.text, lead=MARKS[AnswerOutcome.RIGHT], indent=2, hang=2, is_tight=True))
+        if has_reasons:
+            blocks.append(Text(right.feedback, Tone.DIM, indent=4, is_tight=True))
     return tuple(blocks)
 
 

@@ -10,8 +10,6 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from kit.dialogue.dialogue import Panel
-from kit.document.blocks import Text
 from kit.document.rows import Row, at_both_edges, broken, lines_shown, row, row_text, row_width, side_by_side
 from kit.layers.drawing.spans import GlyphStyle
 from kit.plain_text import counted, wrap
@@ -21,6 +19,7 @@ from kit.school.game.challenges import BEGUN, all_challenges
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.game.players_histogram import HistogramBin
+from kit.school.lessons.lesson_text import about_lesson
 from kit.school.lessons.reading import find_lesson, lesson_number
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressEvent
@@ -135,15 +134,10 @@ def challenge_standing(challenge: Challenge, checks: Sequence[ProgressEvent], wi
 def _lesson_rows(name: str, width: int) -> tuple[Row, ...]:
     """What the lesson that teaches a challenge is about; nothing where it cannot be read, which is told where it is opened."""
     try:
-        lesson = find_lesson(name)
+        about = about_lesson(find_lesson(name))
     except (WorldError, LookupError, OSError):
         return ()
-    about = [Text(lesson.summary), *(Text(each, lead="-", hang=2, is_tight=True) for each in lesson.outcomes)]
-    return tuple(
-        panel_rows(
-            [Panel(f"lesson {lesson.number}, {lesson.title}", tuple(about))], width, len(about) * LEAST_TEXT
-        )
-    )
+    return tuple(panel_rows([about], width, len(about.blocks) * LEAST_TEXT))
 
 
 def _rungs_rows(comparison: AnswerComparison | None) -> list[Row]:

@@ -50,7 +50,7 @@ ROWS_AROUND: Final = 2 + FOOTER_ROWS
 ROWS_FOR_MORE: Final = 3
 """Rows that are kept free above the picture for what is asked next."""
 LEAST_PICTURE, MOST_PICTURE = 9, 25
-"""Rows of the picture below the question; where there are fewer it is left out."""
+"""Rows of the picture below the question, of messages the least; where there are fewer it is left out."""
 POLL_S: Final = 0.2
 """Seconds between two looks whether something has happened by itself."""
 SCROLLS: Final = {
@@ -178,25 +178,27 @@ class DialogueScreen(RowsScreen[None]):
         self._show_field()
         body, self._top = window(whole, self._top, room - picture)
         body = centred(body, self.room.width, room, self._whole, is_at_top=self._has_panels)
-        if not self._has_panels:
-            # An empty row is above a remark that stands there always.
-            body += self._panels_below(room - len(body) - (self.dialogue.note is not None))
+        # An empty row is above a remark that stands there always.
+        body += self._panels_below(room - picture - len(body) - (self.dialogue.note is not None))
         height = len(body) if self._field is not None and self._field.display else "1fr"
         if height != self._body_height:  # setting a style lays out and paints the whole screen
             self._body_height = self._rows("body").styles.height = height
         self._rows("body").show(body)
         if self._has_panels:
-            self._rows("panels").show(panel_rows(self.dialogue.panels(), self._beside - MARGIN, room))
+            beside = [each for each in self.dialogue.panels() if not each.is_below]
+            self._rows("panels").show(panel_rows(beside, self._beside - MARGIN, room))
 
     def _panels_below(self, left: int) -> list[Row]:
-        """The panels at the bottom of a screen that has no columns for them, and the empty rows above. ``left``: rows."""
+        """The panels at the bottom, all of them where the screen has no columns for them, and the empty rows above. ``left``:
+        rows."""
         if (
             self.dialogue.entry is not None or not self.dialogue.has_panels
         ):  # the field stands below the question
             return []
         indent = self._left + MARGIN
         width = text_width(self.room.width, self._widest - 2 * MARGIN)
-        shown = panel_rows(self.dialogue.panels(), width, left - 1, upwards=True)
+        panels = [each for each in self.dialogue.panels() if each.is_below or not self._has_panels]
+        shown = panel_rows(panels, width, left - 1, upwards=True)
         blank = [row()] * (left - len(shown)) if shown else []
         return [*blank, *(row(" " * indent, *each) if each else each for each in shown)]
 
@@ -257,7 +259,8 @@ class DialogueScreen(RowsScreen[None]):
         there is no room. ``left``: rows without words."""
         place = self.room, self.dialogue.place
         if place != self._measured:
-            self._measured, self._picture_rows = place, min(MOST_PICTURE, left - ROWS_FOR_MORE)
+            most = LEAST_PICTURE if isinstance(self.dialogue.scene_shown, GraphScene) else MOST_PICTURE
+            self._measured, self._picture_rows = place, min(most, left - ROWS_FOR_MORE)
         rows = min(self._picture_rows, left - 1)
         has_picture = self._has_panels and self.dialogue.scene_shown is not None
         return rows if has_picture and rows >= LEAST_PICTURE else 0

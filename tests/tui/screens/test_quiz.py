@@ -10,9 +10,11 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.dialogue.effects import Leave
+from kit.document.rows import MARGIN, row_text, row_width
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.quiz_dialogue import QuizDialogue, QuizStage
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
+from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.widgets.world_view import WorldView
@@ -260,6 +262,41 @@ def test_a_large_screen_shows_the_lessons_scene_and_then_the_step_that_teaches_t
         await seen(pilot, step.title)
 
     play(scene, progress, lesson="20-q-learning", size=size)
+
+
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)], ids=str)
+def test_what_was_answered_before_stands_below_the_next_question_with_the_reason(
+    progress: ProgressJournal, size: tuple[int, int]
+) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        item = quiz(screen).item
+        assert item is not None
+        right = item.options[item.right_option]
+        reason = " ".join(right.feedback.split()[:4])
+        assert f"lesson {kit_lesson(item.lesson).number}, " in flat(screen)
+        assert reason not in flat(screen)
+        await pilot.press("0", "n")
+        assert reason in flat(screen)
+        options = quiz(screen).item
+        assert options is not None
+        at = {
+            name: next(number for number, line in enumerate(rows(screen)) if words[:20] in line)
+            for name, words in (("option", options.options[0].text), ("earlier", right.text))
+        }
+        assert at["option"] < at["earlier"]
+
+    play(scene, progress, lesson="25-generalisation", size=size)
+
+
+def test_no_panel_is_wider_than_its_column(progress: ProgressJournal) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        for _ in range(3):
+            width = screen._beside - MARGIN
+            shown = panel_rows(quiz(screen).panels(), width, 1000)
+            assert [row_text(each) for each in shown if row_width(each) > width] == []
+            await pilot.press("1", "2", "n")
+
+    play(scene, progress, lesson="20-q-learning", size=(120, 35))
 
 
 @pytest.mark.parametrize(("lesson", "has_world"), [("01-drive", True), ("02-nodes-and-topics", False)])
