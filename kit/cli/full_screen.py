@@ -6,6 +6,8 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
+import click
+
 from kit.cli import terminal_options
 from kit.cli.process import INTERRUPTED, ScreenClosed
 from kit.tui.terminal import TerminalDecision
@@ -40,7 +42,8 @@ def run_screen(
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
 
-    app = KitApp(terminal)
+    verb = click.get_current_context(silent=True)
+    app = KitApp(terminal, verb.params.get("workspace") if verb is not None else None)
     screen = make_screen(app)
     app.begin(screen)
     # Elsewhere the mouse is left to the terminal, so that what is shown can be selected and copied.

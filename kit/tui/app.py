@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from textual import events, work
@@ -45,7 +46,8 @@ class KitApp(App[None]):
     KitApp.-ascii MessageDialog > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }
     """
 
-    def __init__(self, terminal: TerminalDecision) -> None:
+    def __init__(self, terminal: TerminalDecision, workspace: Path | None = None) -> None:
+        """``workspace``: the folder of the student's files; by default as ``open_workspace`` has it."""
         fire_late_timers()
         super().__init__(driver_class=KeyDriver, ansi_color=terminal.ansi)
         self.kit_theme = Theme.of(terminal)
@@ -55,6 +57,7 @@ class KitApp(App[None]):
             self.add_class("-themed")
             self.switch_theme(terminal.theme_name.value)
         self.set_class(terminal.glyphs.value == "ascii", ASCII_ONLY)
+        self.workspace = workspace
         self._first: Screen[Any] | None = None
         self.drive_mode: ModeName | None = None
         """How keys drive, as the user chose it on one of the screens; None: as the terminal allows."""

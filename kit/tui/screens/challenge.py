@@ -198,9 +198,10 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     def _drawing(self) -> list[Row]:
         return medal_drawing(self._won, medal_size(self.size.height), self._flourish.number)
 
-    def _unavailable_actions(self) -> list[str]:
+    @property
+    def unavailable_actions(self) -> list[str]:
         return [
-            *super()._unavailable_actions(),
+            *super().unavailable_actions,
             *(["edit_file", "editor"] if self._file is None else []),
             *(["next"] if self._following is None else []),
         ]
@@ -308,6 +309,4 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             self.dismiss()
 
     def action_help(self) -> None:
-        self.app.push_screen(
-            HelpDialog("A challenge", self.screen_actions, without=self._unavailable_actions())
-        )
+        self.app.push_screen(HelpDialog("A challenge", self.screen_actions, without=self.unavailable_actions))

@@ -348,6 +348,11 @@ class DialogueScreen(RowsScreen[None]):
         }
         return footer(self.screen_actions, self.room.width, without=without, labels=labels, keys=keys)
 
+    @property
+    def unavailable_actions(self) -> list[str]:
+        possible = {each.id for each in self.turn.possible()}
+        return [each.id for each in self.dialogue.actions if each.id not in possible]
+
     def show_all(self) -> None:
         """Shows everything, and brings what was just said into sight."""
         look, self._top = self.dialogue.block_in_view, 0

@@ -350,10 +350,13 @@ class GraphScreen(FilteredScreen):
         details = self._shows_details
         moves = "field" if self._fields() else "scroll"
         labels = {"choose": moves, "open": "close"} if details else {"open": "message"}
-        without = ("filter", "all_names", "tidy") if details else ("plot",)
-        self._rows("keys").show(
-            [footer(self.screen_actions, self.size.width, without=without, labels=labels)]
-        )
+        keys = footer(self.screen_actions, self.size.width, without=self.unavailable_actions, labels=labels)
+        self._rows("keys").show([keys])
+
+    @property
+    def unavailable_actions(self) -> tuple[str, ...]:
+        """Those of the details or of the picture, whichever is not shown."""
+        return ("filter", "all_names", "tidy") if self._shows_details else ("plot",)
 
     @property
     def _shows_details(self) -> bool:

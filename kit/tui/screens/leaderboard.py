@@ -159,9 +159,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
 
     def _keys(self) -> Row:
         labels = {"join": "leave" if self._has_joined else "join"}
-        return footer(
-            self.screen_actions, self.size.width, labels=labels, without=self._unavailable_actions()
-        )
+        return footer(self.screen_actions, self.size.width, labels=labels, without=self.unavailable_actions)
 
     @work(exclusive=True, group="join")
     async def action_join(self) -> None:

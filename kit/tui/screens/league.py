@@ -221,8 +221,13 @@ class LeagueScreen(RowsScreen[None]):
         note = broken(row((f"  {told}", "dim")), width)
         self._rows("note").show(note[: self._note_rows])
         labels = {"open": "matches" if self._match is None else "replay"}
-        idle = () if self._entrants else ("choose", "open", "run_matches")
-        self._rows("keys").show([footer(self.screen_actions, width, labels=labels, without=idle)])
+        keys = footer(self.screen_actions, width, labels=labels, without=self.unavailable_actions)
+        self._rows("keys").show([keys])
+
+    @property
+    def unavailable_actions(self) -> tuple[str, ...]:
+        """What needs an entrant."""
+        return () if self._entrants else ("choose", "open", "run_matches")
 
     @property
     def _told_of_match(self) -> str:

@@ -193,6 +193,10 @@ class LevelDrive(WatchScreen):
         return self._referee is not None
 
     @property
+    def not_over(self) -> str:
+        return "The drive is not over" if self.has_started and not self._is_over else ""
+
+    @property
     def _is_daily(self) -> bool:
         return self._level.id.startswith(DAILY_PREFIX)
 
@@ -507,7 +511,7 @@ class LevelDrive(WatchScreen):
     # Keys
 
     @property
-    def _unavailable_actions(self) -> tuple[str, ...]:
+    def unavailable_actions(self) -> tuple[str, ...]:
         if self._race_program is None:
             return "speed", "edit_file", "editor"
         return "drive_keys", "stop_robot", *(() if self._may_edit else ("edit_file", "editor"))

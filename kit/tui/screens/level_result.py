@@ -242,7 +242,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         )
 
     @property
-    def _unavailable(self) -> list[str]:
+    def unavailable_actions(self) -> list[str]:
         return [
             *([] if self._result.finish.reached else ["next"]),
             *([] if self._result.program is not None else ["edit_file", "editor"]),
@@ -250,7 +250,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         ]
 
     def _show(self) -> None:
-        page, without = self._page, self._unavailable
+        page, without = self._page, self.unavailable_actions
         keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         hidden = [row()] * max(0, len(page.revealed) - self._shown)  # what is below keeps its place
         rows = [*page.revealed[: self._shown], *hidden]
@@ -306,7 +306,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     def action_help(self) -> None:
         notes = [level_rows.PROGRAM_NOTES] if len(self._result.finishes) > 1 else []
         self.app.push_screen(
-            HelpDialog("The end of a drive", self.screen_actions, *notes, without=self._unavailable)
+            HelpDialog("The end of a drive", self.screen_actions, *notes, without=self.unavailable_actions)
         )
 
     def action_back(self) -> None:

@@ -281,11 +281,11 @@ class LevelsScreen(RowsScreen[None]):
         labels = {} if challenge is not None else {"open": "drive"}
         if self.size.width < ROOM_FOR_WORDS:
             labels |= SHORT_WORDS
-        keys = footer(self.screen_actions, self.size.width, without=self._unavailable, labels=labels)
+        keys = footer(self.screen_actions, self.size.width, without=self.unavailable_actions, labels=labels)
         self._rows("keys").show([keys])
 
     @property
-    def _unavailable(self) -> tuple[str, ...]:
+    def unavailable_actions(self) -> tuple[str, ...]:
         """Actions that do nothing for what is chosen."""
         if self.chosen_challenge is not None:
             return DRIVE_ACTIONS

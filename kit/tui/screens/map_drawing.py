@@ -366,15 +366,19 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
             return
         self._leave()
 
+    @property
+    def not_over(self) -> str:
+        return "The map is not saved" if self._before or self._note else ""
+
     @work(exclusive=True)
     async def action_back(self) -> None:
-        if self._before or self._note:
+        if self.not_over:
             choices = [
                 PickerItem("stay", "go on drawing"),
                 PickerItem("save", "save and leave"),
                 PickerItem("leave", "leave without saving"),
             ]
-            chosen = await self.app.push_screen_wait(Picker("The map is not saved", choices))
+            chosen = await self.app.push_screen_wait(Picker(self.not_over, choices))
             if chosen == "save":
                 self.action_save()
             if chosen != "leave":

@@ -218,10 +218,14 @@ class PhotoCornersScreen(ActivePaintScreen["Corners | None"]):
             else "Click the sheet's corners, or move the cross and press Space. + enlarges."
         )
         self.query_one("#note", TextRows).show([row((note[: self.size.width], "warn"))])
-        without = () if count == CORNERS else ("next",)
+        without = self.unavailable_actions
         keys = footer(self.screen_actions, self.size.width, without=without, labels={"next": "go on"})
         self.query_one("#keys", TextRows).show([keys])
         self._view.draw(self._cursor, self.placed)
+
+    @property
+    def unavailable_actions(self) -> tuple[str, ...]:
+        return () if len(self.placed) == CORNERS else ("next",)
 
     # Keys and mouse
 

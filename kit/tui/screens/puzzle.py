@@ -121,19 +121,18 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         """None: the page says it, so that no row changes its place."""
         return []
 
-    def _unavailable_actions(self) -> list[str]:
+    @property
+    def unavailable_actions(self) -> list[str]:
         board = self._board
         return [
-            *super()._unavailable_actions(),
+            *super().unavailable_actions,
             *([] if board.marks() else ["mark_cell"]),
             *([] if board.switches() else ["switch_robot"]),
         ]
 
     def _keys(self) -> Row:
         labels = {"mark_cell": self._board.mark_word}
-        return footer(
-            self.screen_actions, self.size.width, labels=labels, without=self._unavailable_actions()
-        )
+        return footer(self.screen_actions, self.size.width, labels=labels, without=self.unavailable_actions)
 
     def _changed(self, before_restart: Board | None = None) -> None:
         self._before_restart = before_restart
@@ -207,6 +206,6 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
 
     def action_help(self) -> None:
         """What the keys of the board do is told as on the page."""
-        without = [*self._unavailable_actions(), *BOARD_KEYS]
+        without = [*self.unavailable_actions, *BOARD_KEYS]
         note = ("board", f"{self._board.keys} {self._board.signs}".strip())
         self.app.push_screen(HelpDialog("A puzzle", self.screen_actions, (note,), without=without))

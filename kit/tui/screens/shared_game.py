@@ -48,6 +48,7 @@ from kit.tui.theme import Theme
 from kit.workspace import Workspace
 
 GUEST_PLAYER: Final = 1
+NOT_OVER: Final = "The game is not over"
 RULE_WIDTH: Final = 56
 """Columns of the rule on the page of keys."""
 FOOTER: Final = ("drive_keys", "stop_robot", "restart", "help", "back", "quit")
@@ -124,7 +125,7 @@ class SharedScreen(WatchScreen):
         return rule, (robots, *letters)
 
     @property
-    def _unavailable_actions(self) -> tuple[str, ...]:
+    def unavailable_actions(self) -> tuple[str, ...]:
         """Another game begins after one that is over, and only a race has ghosts."""
         phase = None if self.state is None else self.state.phase
         plays = self.player is not None and not self.ended
@@ -134,12 +135,16 @@ class SharedScreen(WatchScreen):
 
     def action_back(self) -> None:
         """Asks first where a game would be lost by it."""
-        runs = self.state is not None and self.state.phase is SharedPhase.RUNNING
-        if runs and self.player is not None and self.loses_by_leaving:
+        if self.not_over and self.loses_by_leaving:
             self.stop_driving()
             self._ask_whether_to_leave()
         else:
             super().action_back()
+
+    @property
+    def not_over(self) -> str:
+        runs = self.state is not None and self.state.phase is SharedPhase.RUNNING and not self.ended
+        return NOT_OVER if runs and self.player is not None else ""
 
     @property
     def loses_by_leaving(self) -> bool:
@@ -149,7 +154,7 @@ class SharedScreen(WatchScreen):
     @work(exclusive=True, group="leave")
     async def _ask_whether_to_leave(self) -> None:
         choices = [PickerItem("stay", "play on"), PickerItem("leave", "leave", "the other player wins")]
-        if await self.app.push_screen_wait(Picker("The game is not over", choices)) == "leave":
+        if await self.app.push_screen_wait(Picker(NOT_OVER, choices)) == "leave":
             self.has_left = True
             super().action_back()
 

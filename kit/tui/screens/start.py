@@ -119,6 +119,10 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self.set_timer(4.0, self._read_once)
 
     def on_unmount(self) -> None:
+        self.release()
+
+    def release(self) -> None:
+        """Closes the student's files."""
         self._reading.shutdown(wait=False, cancel_futures=True)
         self._store.close()
 
@@ -288,47 +292,33 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         terms = await to_thread(_glossary)
         return [
             *(
-                PaletteCommand(
-                    item.title, item.about, self._opener(getattr(self, f"_open_{item.name}")), item.words
-                )
+                self._place(item.title, item.about, getattr(self, f"_open_{item.name}"), item.words)
                 for item in MENU
             ),
             *(
-                PaletteCommand(
+                self._place(
                     of_game[name].label.capitalize(),
                     of_game[name].help,
-                    self._opener(partial(self._open_levels, None, name)),
+                    partial(self._open_levels, None, name),
                     words,
                 )
                 for name, words in PARTS_OF_GAME.items()
             ),
-            PaletteCommand(
+            self._place(
                 "Key test",
                 "press keys and see what arrives on this terminal",
-                self._opener(self._open_key_test),
+                self._open_key_test,
                 "settings keyboard",
             ),
             *(
-                PaletteCommand(
-                    f"Lesson {entry.number}",
-                    entry.title,
-                    self._opener(partial(self._open_lesson, entry.lesson)),
-                )
+                self._place(f"Lesson {entry.number}", entry.title, partial(self._open_lesson, entry.lesson))
                 for entry in overview.shelf
                 if entry.lesson is not None
             ),
+            *(self._place(f"Level {level.title}", "", partial(self._open_levels, level)) for level in levels),
+            *(self._place(f"Puzzle {each.title}", "", partial(self._open_levels, each)) for each in puzzles),
             *(
-                PaletteCommand(f"Level {level.title}", "", self._opener(partial(self._open_levels, level)))
-                for level in levels
-            ),
-            *(
-                PaletteCommand(f"Puzzle {each.title}", "", self._opener(partial(self._open_levels, each)))
-                for each in puzzles
-            ),
-            *(
-                PaletteCommand(
-                    f"Map {card.name}", card.summary, self._opener(partial(self._open_drive, card.name))
-                )
+                self._place(f"Map {card.name}", card.summary, partial(self._open_drive, card.name))
                 for card in all_maps()
             ),
             *(
@@ -348,11 +338,20 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
         open_glossary(self.app, term)
 
-    def _opener(self, open_it: Callable[[], Awaitable[None]]) -> Callable[[], Awaitable[None]]:
+    def _place(
+        self, name: str, about: str, open_it: Callable[[], Awaitable[None]], words: str = ""
+    ) -> PaletteCommand:
+        """Opens it above this screen, which comes in place of all others where it is not shown yet."""
+        app = self.app
+
         async def run() -> None:
+            if not self.is_attached:
+                while len(app.screen_stack) > 1:
+                    await app.pop_screen()
+                await app.push_screen(self)
             self._open_from_palette(open_it)
 
-        return run
+        return PaletteCommand(name, about, run, words, is_place=True)
 
     @work(exclusive=True, group="menu")
     async def _open_from_palette(self, open_it: Callable[[], Awaitable[None]]) -> None:

@@ -80,9 +80,10 @@ class TextScreen(ActivePaintScreen[None]):
         return 0
 
     def _keys(self) -> Row:
-        return footer(self.screen_actions, self.size.width, without=self._unavailable_actions())
+        return footer(self.screen_actions, self.size.width, without=self.unavailable_actions)
 
-    def _unavailable_actions(self) -> list[str]:
+    @property
+    def unavailable_actions(self) -> list[str]:
         """Actions that do nothing now."""
         return [] if self._scrolls else ["scroll"]
 

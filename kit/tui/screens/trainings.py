@@ -174,10 +174,13 @@ class TrainingsScreen(RowsScreen[None]):
         total = sum(each.disk_bytes for each in runs or ())
         about = about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
-        unusable = (
-            () if runs else ("open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
-        )
-        self._rows("keys").show([footer(self.screen_actions, width, without=unusable)])
+        self._rows("keys").show([footer(self.screen_actions, width, without=self.unavailable_actions)])
+
+    @property
+    def unavailable_actions(self) -> tuple[str, ...]:
+        """What needs a training that there is not."""
+        of_run = "open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run"
+        return () if self._overviews else of_run
 
     def _follow_chosen(self) -> None:
         chosen = self._chosen_run

@@ -431,7 +431,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
     # Keys
 
     def _show_keys(self) -> None:
-        without = ("quit" if self._has_way_back else "back", *self._unavailable_actions)
+        without = ("quit" if self._has_way_back else "back", *self.unavailable_actions)
         line = footer(self.screen_actions, self.size.width or 80, without=without, labels=self.key_labels)
         self._rows("keys").show([line])
 
@@ -441,9 +441,14 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         return ()
 
     @property
-    def _unavailable_actions(self) -> tuple[str, ...]:
+    def unavailable_actions(self) -> tuple[str, ...]:
         """What does nothing here."""
         return ()
+
+    @property
+    def not_over(self) -> str:
+        """What has begun here and would end if the screen were left, as a sentence; empty: nothing."""
+        return ""
 
     def is_drive_key(self, key: str) -> bool:
         """Esc goes back where there is a screen to go back to; else it is a key for the student's nodes."""
@@ -511,7 +516,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self.call_after_refresh(self._show)  # when everything has its new size
 
     def action_help(self) -> None:
-        without = (*(() if self._has_way_back else ("back",)), *self._unavailable_actions)
+        without = (*(() if self._has_way_back else ("back",)), *self.unavailable_actions)
         self.app.push_screen(
             HelpDialog(self.help_title, self.screen_actions, *self.help_notes, without=without)
         )

@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from textual.pilot import Pilot
 from textual.widgets import OptionList
 
+from kit.controllers import prepare_workspace
 from kit.render.palettes import COLOR_SCHEMES
 from kit.render.roles import Role
+from kit.school.game.levels import find_level
 from kit.school.lessons.glossary import read_glossary
+from kit.school.progress import ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.glossary import GlossaryScreen
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lessons import LessonsScreen
+from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.puzzle import PuzzleScreen
+from kit.tui.screens.start import StartScreen
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
-from tests.tui.lesson_stage import seen, text, until
+from tests.tui.lesson_stage import seen, stage, text, until
 from tests.tui.screens.test_start import House
 from tests.tui.screens.test_start import house as house  # the fixture
 
@@ -181,3 +188,55 @@ def test_themes_can_be_switched_while_it_runs() -> None:
     assert app.kit_theme.palette is palette
     assert palette[Role.FLOOR].color == COLOR_SCHEMES["light"].roles[Role.FLOOR]
     assert app.theme == "kit-light"
+
+
+@pytest.mark.long
+def test_below_another_first_screen_it_finds_the_same_places_and_asks_before_a_drive_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    monkeypatch.setenv("KIT_WORKSPACE", str(workspace.folder))
+
+    async def choose(pilot: Pilot[None], name: str) -> None:
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        options = pilot.app.screen.query_one(OptionList)
+        await until(pilot, lambda: options.option_count > 50, "lessons, levels and maps")
+        await pilot.press(*name, "enter")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "front")
+        drive = pilot.app.screen
+        await pilot.press("w")
+        await choose(pilot, "map warehouse")
+        await seen(pilot, "The drive is not over")
+        await pilot.press("enter")
+        await until(pilot, lambda: pilot.app.screen is drive, "the drive goes on")
+        await choose(pilot, "map warehouse")
+        await seen(pilot, "The drive is not over")
+        await pilot.press("down", "enter")
+        await until(pilot, lambda: type(pilot.app.screen) is PlayScreen, "the map")
+        await pilot.press("escape")
+        await until(pilot, lambda: isinstance(pilot.app.screen, StartScreen), "the first screen")
+
+    with ProgressJournal(workspace.folder) as journal:
+        level = find_level("first-drive")
+        stage(lambda theme: LevelDrive(theme, level, [], journal, workspace), scene)
+
+
+def test_it_leaves_out_what_does_nothing_now(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        await pilot.press("1")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LessonScreen), "the lesson")
+        lesson = pilot.app.screen
+        assert isinstance(lesson, LessonScreen)
+        idle = [each for each in lesson.dialogue.actions if each.id in lesson.unavailable_actions]
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        found = [str(each.prompt) for each in pilot.app.screen.query_one(OptionList).options]
+        assert idle
+        for each in idle:
+            assert not any(each.keys.help in line for line in found)
+
+    house.play(scene)
