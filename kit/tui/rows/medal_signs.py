@@ -18,7 +18,7 @@ MEDAL_SIGNS: Final = {
 }
 MEDAL_STYLES: Final = {
     Medal.NONE: "dim",
-    Medal.BRONZE: "",
+    Medal.BRONZE: "bronze",
     Medal.SILVER: "bold",
     Medal.GOLD: "warn",
     Medal.MASTER: "good",

@@ -29,8 +29,10 @@ STYLES: Final = {
     "good": Style(color="green", bold=True),
     "warn": Style(color="yellow", bold=True),
     "bad": Style(color="red", bold=True),
+    "bronze": Style(color="#a8652a"),
 }
-"""The few ways a text can look. Each bold, dim or reversed, so that none means anything by its colour alone."""
+"""The few ways a text can look. Each bold, dim or reversed, so that none means anything by its colour alone; but bronze, which
+is a medal's letter: of the 16 colours it becomes brown, which bold would make gold's yellow."""
 
 ERROR: Final = "error"
 SYNTAX_STYLES: Final[Mapping[str, Style]] = MappingProxyType(
