@@ -102,7 +102,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit task new mine --level left-turn   to train an agent for a level
     kit game race mine/task.yaml --agent my_run   use your own task
     kit game replay left-turn             replay your best drive
-    kit game daily                        the same level for everyone today
+    kit game daily                        today's maze, the same for everyone
     kit game challenge                    puzzles without driving
     kit game host two-doors --tag         two players: a race or tag
     kit game leaderboard                  the best times on this machine
@@ -205,7 +205,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 @click.option("--plain", is_flag=True, help="Print lines of text instead of a full screen.")
 @click.pass_context
 def daily(context: click.Context, controller: str | None, plain: bool) -> None:
-    """Drive the level of the day, which is the same for everyone."""
+    """Drive today's maze, which is the same for everyone."""
     from kit.school.game.daily import daily_level, has_run, streak, today
 
     level = daily_level(today())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -123,7 +124,30 @@ def _is_constant(statement: ast.stmt) -> bool:
     return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
 
 
-BELTS: Final = ("no", "white", "yellow", "green", "blue", "brown", "black")
+@dataclass(frozen=True, slots=True)
+class Belt:
+    """What is earned in a world by medals on its levels."""
+
+    name: str
+    medal: Medal
+    """On so many levels, or a better one."""
+    share: float
+    """Of the levels; at least one."""
+    task: str
+
+    def least(self, levels: int) -> int:
+        """On how many of so many levels."""
+        return max(1, math.ceil(self.share * levels))
+
+
+BELTS: Final = (
+    Belt("white", Medal.BRONZE, 0.0, "a medal"),
+    Belt("yellow", Medal.BRONZE, 1.0, "a medal on each level"),
+    Belt("green", Medal.SILVER, 0.5, "silver on half of the levels"),
+    Belt("blue", Medal.SILVER, 1.0, "silver on each level"),
+    Belt("brown", Medal.GOLD, 0.5, "gold on half of the levels"),
+    Belt("black", Medal.GOLD, 1.0, "gold on each level"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,21 +251,19 @@ def level_progress(
 
 
 def belt_of(best: Sequence[Medal]) -> str:
-    """The belt of a world, by the best medal on each of its levels: white for its first medal, yellow for one on every level,
-    green and blue for silver on half of the levels and on all, brown and black likewise for gold."""
+    """The belt of a world, by the best medal on each of its levels: the last of ``BELTS`` that is earned with all before it."""
+    earned = _belts_earned(best)
+    return BELTS[earned - 1].name if earned else "no"
 
-    def share(medal: Medal) -> float:
-        return sum(each >= medal for each in best) / len(best) if best else 0.0
 
-    steps = [
-        share(Medal.BRONZE) > 0.0,
-        share(Medal.BRONZE) == 1.0,
-        share(Medal.SILVER) >= 0.5,
-        share(Medal.SILVER) == 1.0,
-        share(Medal.GOLD) >= 0.5,
-        share(Medal.GOLD) == 1.0,
-    ]
-    return BELTS[next((number for number in range(len(steps), 0, -1) if all(steps[:number])), 0)]
+def next_belt(best: Sequence[Medal]) -> Belt | None:
+    """The belt that is to be earned next; None where all are."""
+    return next(iter(BELTS[_belts_earned(best) :]), None)
+
+
+def _belts_earned(best: Sequence[Medal]) -> int:
+    earned = [sum(medal >= each.medal for medal in best) >= each.least(len(best)) for each in BELTS]
+    return (*earned, False).index(False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -168,8 +168,10 @@ def _with_small_map(told: DriveEnd, width: int, height: int, encoder: Encoder) -
     rows += told.won if is_won_beside else []
     are_rungs_beside = _fit(rows, told.rungs)
     rows += told.rungs if are_rungs_beside else []
-    below = [*([] if are_rungs_beside else told.ladder), *told.starts]
     after = [] if is_won_beside else told.won
+    below = [] if are_rungs_beside else told.ladder
+    if len(below) + len(told.starts) + len(after) + max(LEAST_BESIDE_ROWS, len(rows)) <= room:
+        below = [*below, *told.starts]
     left = room - len(below) - len(after)
     if left - len(told.photo_finish) >= max(LEAST_BESIDE_ROWS, len(rows)):
         left -= len(told.photo_finish)

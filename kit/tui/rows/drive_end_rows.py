@@ -55,14 +55,13 @@ def how_it_ended(finishes: Sequence[RaceFinish], counts: int, *, was_watched: bo
     said = finish_sentence(finishes[counts])
     if len(finishes) == 1:
         return [said]
-    arrived = sum(each.reached for each in finishes)
-    of_first = finish_sentence(finishes[0])
-    first = f"{'You watched start 1' if was_watched else 'Start 1'}: {of_first}"
-    which = f"that of start {counts + 1}"
-    ended = "which is this one." if counts == 0 else f"{which}: {said}"
-    if counts and said == of_first:
-        ended = f"{which}, which ended likewise."
-    return [first, f"Of {len(finishes)} starts {arrived} arrived. The middle result counts, {ended}"]
+    first = finish_sentence(finishes[0])
+    if said == first:
+        return [f"{said} Of {len(finishes)} starts the middle one counts."]
+    return [
+        f"{'You watched start 1' if was_watched else 'Start 1'}: {first}",
+        f"Start {counts + 1} counts, the middle of {len(finishes)}: {said}",
+    ]
 
 
 def ending(level: GameLevel, finish: RaceFinish, width: int) -> list[Row]:

@@ -188,7 +188,7 @@ def with_charts(
 
 def tells_messages(panel: Sequence[Row]) -> bool:
     """Whether a panel of ``instruments`` has the newest messages."""
-    title = ruled_title(MESSAGES, 0)[1]
+    title = ruled_title(MESSAGES, 2 * len(MESSAGES))[1]
     return any(title in each for each in panel)
 
 

@@ -60,7 +60,7 @@ def _driver_text(entry: LeaderboardEntry) -> str:
 
 def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     """The quickest drives of today's level, of yesterday's and of each other. ``entries``: in the order of ``read_entries``."""
-    days = {daily_id(today()): "Today's level", daily_id(yesterday()): "Yesterday's level"}
+    days = {daily_id(today()): "Today's maze", daily_id(yesterday()): "Yesterday's maze"}
     titles = days | {each.id: each.title for each in all_levels()}
     rows = tuple(
         (title, *cells)

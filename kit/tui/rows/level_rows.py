@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from kit.document.rows import Row, row
+from kit.document.rows import Row, row, row_width
 from kit.plain_text import wrap
 from kit.school.game.daily import DAILY_PREFIX
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
 from kit.school.game.medal import RUNGS, Medal, medal_time, rung_in_reach
-from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
+from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of, next_belt
 from kit.school.game.race import STUCK_TIME, DriverKind, RaceFinish
 from kit.school.game.starts import SHIFT_M, SHIFT_RAD, STARTS
 from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_words
@@ -31,16 +31,18 @@ BAR: Final = 12
 """Columns of the longest sector's bar."""
 
 
-def world_heading(world: GameWorld, number: int, count: int, belt: str) -> list[Row]:
-    """A world's name, the belt earned in it, and its story."""
-    return [
-        row(
-            (f" World {number} of {count}: {world.title}", "bold"),
-            f"   {belt} belt",
-            ("   left, right: other worlds", "dim"),
-        ),
-        row((f" {world.story}", "dim")),
-    ]
+def world_heading(world: GameWorld, number: int, count: int, best: Sequence[Medal], width: int) -> list[Row]:
+    """A world's name, the belt earned in it by the ``best`` medal of each level, what the next belt asks for where there is
+    room, and its story."""
+    following = next_belt(best)
+    asked = "" if following is None else f", {following.name} for {following.task}"
+    title, others = (
+        row((f" World {number} of {count}: {world.title}", "bold")),
+        ("   left, right: other worlds", "dim"),
+    )
+    whole = row(*title, f"   {belt_of(best)} belt", (asked, "dim"), others)
+    first = whole if row_width(whole) <= width else row(*title, f"   {belt_of(best)} belt", others)
+    return [first, row((f" {world.story}", "dim"))]
 
 
 def medal_counts(summary: GameSummary) -> str:
@@ -179,8 +181,7 @@ def opens_after(level: GameLevel) -> str:
     """Says what opens a level: any of these."""
     titles = {each.id: each.title for each in all_levels()}
     lesson = [f"lesson {level.lesson_number}"] if level.opened_by_lesson else []
-    *others, last = [*(titles[each] for each in level.opened_by), *lesson]
-    return f"opens after {' or '.join(filter(None, (', '.join(others), last)))}"
+    return f"opens after {' or '.join([*(titles[each] for each in level.opened_by), *lesson])}"
 
 
 def before_it_goes_on(seconds: float) -> list[Row]:

@@ -130,7 +130,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         times = _rows_of(todays_times(entries), columns)
         nearest = _rows_of(reach_table(medals_in_reach(own)[:MOST_IN_REACH]), columns)
         rows = [
-            ruled_title("today's level", columns, level.title),
+            ruled_title("today's maze", columns, level.title),
             *map(row, picture_of(level, columns, MAP_ROWS, glyphs)),
             row(),
             *(times or [row(("Nobody on the board has driven it yet.", "dim"))]),

@@ -33,7 +33,6 @@ from kit.school.game.player_progress import (
     ExtraRule,
     GameSummary,
     LevelProgress,
-    belt_of,
     completed_lessons,
     level_progress,
     open_level_after,
@@ -83,7 +82,7 @@ NOTES: Final = (
     ("bump", "by hand back to the start, with all targets to be reached again"),
     *level_rows.PROGRAM_NOTES,
     ("side by side", "a pair that is apart for longer gets bronze at best"),
-    ("locked", "opens after the level before it, or its lesson; on the map ( )"),
+    ("locked", "opens after any one of the levels before it, or its lesson; on the map ( )"),
 )
 
 
@@ -94,7 +93,7 @@ NEW_AGENT: Final = " "
 STARTS: Final = (*DRIVE_ACTIONS, "open", "daily")
 """Actions that begin a drive or a replay."""
 GIVEN_UP: Final = (
-    "Today's run has counted, without a finish. d drives the maze again as practice, f shows the board of the day; "
+    "Today's run has counted, without a finish. d drives the maze again as practice, f shows its board; "
     "tomorrow there is another one."
 )
 """What is said of a run of the day that was left."""
@@ -118,7 +117,7 @@ class LevelsScreen(RowsScreen[None]):
         own=(
             letter("agent", "a", "agent", "let an agent that you trained drive the level"),
             letter("leaderboard", "f", "leaderboard", "show this machine's leaderboard"),
-            letter("daily", "d", "daily", "drive the level of the day, the same for everyone"),
+            letter("daily", "d", "today's maze", "drive today's maze, the same for everyone"),
             letter("two_players", "2", "two players", "tag or a race: with a program, or another player"),
         ),
     )  # fmt: skip
@@ -209,7 +208,7 @@ class LevelsScreen(RowsScreen[None]):
             title = self._levels[number].title
             self._news = f"Your drive of {title} was cut short: Enter on {title} goes on with it."
         elif drive is not None and drive.level == daily_level(today()).id:
-            self._news = "Your run of today's level was cut short: d goes on with it."
+            self._news = "Your run of today's maze was cut short: d goes on with it."
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
@@ -242,7 +241,7 @@ class LevelsScreen(RowsScreen[None]):
         """What the heading says of the daily challenge, in at most ``width`` columns."""
         days = streak(self._progress.events(EventKind.FINISH), today())
         told = [f", {counted(days, 'day')} in a row", f", {counted(days, 'day')}"] if days else []
-        texts = (f"d: today's level{each}" for each in (*told, ""))
+        texts = (f"d: today's maze{each}" for each in (*told, ""))
         return next((text for text in texts if len(text) <= width), "")
 
     @work(exclusive=True, group="lessons")
@@ -303,9 +302,8 @@ class LevelsScreen(RowsScreen[None]):
 
     def _world_heading(self, best: Sequence[Medal]) -> list[Row]:
         """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
-        number = self._worlds.index(self._world) + 1
-        heading = level_rows.world_heading(self._world, number, len(self._worlds), belt_of(best))
-        width = self._rows("map").size.width
+        number, width = self._worlds.index(self._world) + 1, self._rows("map").size.width
+        heading = level_rows.world_heading(self._world, number, len(self._worlds), best, width)
         return [fitted(each, width) for each in (*heading, row((f" {self._news}", "good")))]
 
     def _level_rows(self) -> tuple[list[Row], list[Row]]:

@@ -54,7 +54,7 @@ VAST: Final = 190
 """Columns from which on the robot's picture leaves room for a wide panel."""
 WITH_VAST: Final = [*BREAKPOINTS, (VAST, "-vast")]
 PLACE, CONTROLLER = "maze", "random_walk"
-PARTS_OF_GAME: Final = {"daily": "maze today race", "two_players": "multiplayer", "leaderboard": "records"}
+PARTS_OF_GAME: Final = {"daily": "daily race", "two_players": "multiplayer", "leaderboard": "records"}
 """Actions of the game's screen that the palette lists too, and other words by which it finds them."""
 
 

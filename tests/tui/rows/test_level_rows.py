@@ -75,7 +75,9 @@ def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: s
 
 def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
     for world in all_worlds():
-        assert all(len(row_text(each)) <= 80 for each in world_heading(world, 1, 8, "yellow"))
+        for medals in ([Medal.NONE], [Medal.BRONZE], [Medal.GOLD]):
+            assert all(len(row_text(each)) <= 80 for each in world_heading(world, 1, 8, medals, 80))
+        assert "white for a medal" in row_text(world_heading(world, 1, 8, [Medal.NONE], 120)[0])
     for each in level_progress(kit_levels(), ()):
         for is_open in (True, False):
             rows = about(replace(each, is_open=is_open), (), 99.0, 80)
@@ -166,8 +168,9 @@ def test_of_a_program_first_the_drive_that_was_watched_is_told_and_then_the_one_
     assert how_it_ended([lost], 0) == [finish_sentence(lost)]
     first, counts = how_it_ended([arrived, lost, late, lost, lost], 3)
     assert first.endswith(finish_sentence(arrived))
-    assert counts.endswith(f"start 4: {finish_sentence(lost)}")
-    assert " 5 starts 2 arrived" in counts
-    first, counts = how_it_ended([late, arrived, arrived, lost, lost], 0)
-    assert first.endswith(finish_sentence(late))
-    assert finish_sentence(late) not in counts
+    assert counts.endswith(finish_sentence(lost))
+    assert "tart 4 " in counts
+    (both,) = how_it_ended([late, arrived, arrived, lost, lost], 0)
+    assert both.startswith(finish_sentence(late))
+    (both,) = how_it_ended([lost, arrived, lost, late, lost], 2)
+    assert both.startswith(finish_sentence(lost))

@@ -75,8 +75,8 @@ def test_it_finds_puzzles_and_opens_those_without_a_clock(house: House, name: st
     [
         ("tag", "Two players"),
         ("two players", "Two players"),
-        ("daily", "Daily"),
-        ("maze", "Daily"),
+        ("daily", "Today's maze"),
+        ("maze", "Today's maze"),
         ("race", "Levels"),
         ("league", "League"),
         ("settings", "Key test"),
