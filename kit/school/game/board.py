@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import accumulate, groupby
+from types import MappingProxyType
 from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
 
 from kit.breadth_first import reached_from
@@ -19,7 +21,7 @@ from kit.school.game.judgement import Judgement
 State = TypeVar("State")
 
 WALL: Final = "#"
-GOAL: Final = "G"
+START, GOAL = "S", "G"
 FULL, LIT = "█", "░"
 """Fill a cell: a wall, and what is seen."""
 MOVES: Final = {"l": (0, -1), "r": (0, 1), "u": (-1, 0), "d": (1, 0)}
@@ -30,6 +32,11 @@ Cell: TypeAlias = tuple[int, int]
 """Row and column, from 0."""
 Grid: TypeAlias = Sequence[str]
 """Lines of signs, ``#`` a wall."""
+NO_FIGURES: Final[Mapping[Cell, tuple[str, str]]] = MappingProxyType({})
+LEAST_WITH_FIGURES: Final = 3
+"""The scale from which on a cell of a grid has room for a figure."""
+THIRDS: Final = ("bad", "warn", "good")
+"""Styles of the lowest, middle and highest third of values."""
 
 
 class Board(ABC):
@@ -155,9 +162,15 @@ def letters_of(columns: int, rows: int) -> str:
     return next((name for name, change in MOVES.items() if change == (rows, columns)), "")
 
 
-def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1) -> list[Row]:
+def grid_rows(
+    grid: Grid,
+    signs: Mapping[Cell, tuple[str, str]],
+    scale: int = 1,
+    figures: Mapping[Cell, tuple[str, str]] = NO_FIGURES,
+) -> list[Row]:
     """A grid as rows, for each cell ``scale`` rows of twice as many columns; walls at the edges of the grid are as thin as can be.
-    ``signs``: sign and style of cells that differ from the drawing."""
+    ``signs``: sign and style of cells that differ from the drawing; where one begins, the start's is kept before it. ``figures``:
+    of cells, with their style, below the sign in cells that are large enough."""
     rows, columns = len(grid), max(map(len, grid))
 
     def is_thin(number: int, count: int, line: Iterable[str]) -> bool:
@@ -169,10 +182,17 @@ def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1)
     ]
 
     def shown(row: int, column: int, part: int) -> tuple[str, str]:
-        sign, style = signs.get((row, column)) or _plain_square(grid[row][column])
+        plain = grid[row][column]
+        sign, style = signs.get((row, column)) or _plain_square(plain)
         if sign in (FULL, LIT):
             return sign * 2 * thick[column], style
-        return (sign if part == scale // 2 else " ").center(2 * scale - 1) + " ", style
+        middle, text = (scale - 1) // 2, ""
+        if part == middle:
+            text = START + sign if plain == START != sign else sign
+        elif part == middle + 1 and scale >= LEAST_WITH_FIGURES:
+            text, figure_style = figures.get((row, column), ("", ""))
+            style = style if style == "chosen" else figure_style
+        return f"{text.center(2 * scale - 1)} "[: 2 * scale], style
 
     return [
         (("  ", ""), *_join_by_style(shown(row, column, part) for column in range(len(line))))
@@ -186,16 +206,34 @@ def told_rows(title: str, told: Iterable[tuple[TableCell, ...]], width: int) -> 
     return [((title, "dim"),), *rows_of([labelled_table(told, is_tight=True)], Page(width=width, margin=1))]
 
 
-def figure_rows(title: str, grid: Grid, figures: Mapping[Cell, str]) -> list[Row]:
-    """A grid below its title, with a figure in each cell that has one; walls at the edges are left out."""
+def by_value(values: Mapping[Cell, float], texts: Mapping[Cell, str]) -> dict[Cell, tuple[str, str]]:
+    """The texts of values, each with a style for the third of their range that the value is in; that of an infinite one is dim.
+
+    >>> by_value({(0, 0): 1.0, (0, 1): 5.0, (0, 2): 9.0}, {(0, 0): "1", (0, 1): "5", (0, 2): "9"})
+    {(0, 0): ('1', 'bad'), (0, 1): ('5', 'warn'), (0, 2): ('9', 'good')}
+    """
+    finite = [value for value in values.values() if math.isfinite(value)]
+    low, high = min(finite, default=0.0), max(finite, default=0.0)
+
+    def style(value: float) -> str:
+        if not math.isfinite(value) or low == high:
+            return "dim" if low != high else ""
+        return THIRDS[min(2, int(3 * (value - low) / (high - low)))]
+
+    return {cell: (texts[cell], style(value)) for cell, value in values.items()}
+
+
+def figure_rows(title: str, grid: Grid, figures: Mapping[Cell, tuple[str, str]]) -> list[Row]:
+    """A grid below its title, with a figure in its style in each cell that has one; walls at the edges are left out."""
     free = free_cells(grid)
     (top, bottom), (left, right) = ((min(each), max(each)) for each in zip(*free, strict=True))
-    width = max((len(text) for text in figures.values()), default=1) + 1
+    width = max((len(text) for text, _ in figures.values()), default=1) + 1
 
     def shown(cell: Cell) -> tuple[str, str]:
         if cell not in free:
             return FULL * width, "dim"
-        return f"{figures.get(cell, '.'):>{width}}", "" if cell in figures else "dim"
+        text, style = figures.get(cell, (".", "dim"))
+        return f"{text:>{width}}", style
 
     return [
         ((title, "dim"),),
@@ -209,7 +247,7 @@ def figure_rows(title: str, grid: Grid, figures: Mapping[Cell, str]) -> list[Row
 def visit_rows(grid: Grid, cells: Iterable[Cell]) -> list[Row]:
     """How often each cell of a grid was entered."""
     return figure_rows(
-        "times on each square", grid, {cell: str(count) for cell, count in Counter(cells).items()}
+        "times on each square", grid, {cell: (str(count), "") for cell, count in Counter(cells).items()}
     )
 
 

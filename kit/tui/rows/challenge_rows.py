@@ -10,7 +10,18 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from kit.document.rows import Row, at_both_edges, broken, lines_shown, row, row_text, row_width, side_by_side
+from kit.dialogue.dialogue import Panel
+from kit.document.rows import (
+    MARGIN,
+    Row,
+    at_both_edges,
+    broken,
+    lines_shown,
+    row,
+    row_text,
+    row_width,
+    side_by_side,
+)
 from kit.layers.drawing.spans import GlyphStyle
 from kit.plain_text import counted, wrap
 from kit.school.game.board import Board
@@ -119,25 +130,30 @@ def most_rows_about(width: int) -> int:
 
 
 def challenge_standing(challenge: Challenge, checks: Sequence[ProgressEvent], width: int) -> list[Row]:
-    """The keys that solve a challenge on the screen and what each medal asks for, as far as they are known; the checks so far;
-    the lesson that teaches it. ``checks``: of it, the oldest first."""
+    """The keys that solve a challenge on the screen and what each medal asks for, as far as they are known; the checks so far.
+    ``checks``: of it, the oldest first."""
     board, rows = challenge.task.board(""), list[Row]()
     if board is not None:
         rows += [row(), *_wrap_with_lead("keys  ", board.keys, width, "dim")]
         with suppress(AnswerError):  # which an empty answer is to some
             rows += _rungs_rows(board.judgement().comparison)
     tries = tries_rows(checks, width)
-    return [*rows, *([row(), *tries] if tries else []), *_lesson_rows(challenge.lesson, width)]
+    return [*rows, *([row(), *tries] if tries else [])]
+
+
+def lesson_below(challenge: Challenge, width: int, height: int) -> list[Row]:
+    """What the lesson that teaches a challenge is about; cut where there is little room, and nothing where it cannot be read, which
+    is told where it is opened."""
+    about = _about_lesson_of(challenge.lesson)
+    return [] if about is None else panel_rows([about], width, height)
 
 
 @cache
-def _lesson_rows(name: str, width: int) -> tuple[Row, ...]:
-    """What the lesson that teaches a challenge is about; nothing where it cannot be read, which is told where it is opened."""
+def _about_lesson_of(name: str) -> Panel | None:
     try:
-        about = about_lesson(find_lesson(name))
+        return about_lesson(find_lesson(name))
     except (WorldError, LookupError, OSError):
-        return ()
-    return tuple(panel_rows([about], width, len(about.blocks) * LEAST_TEXT))
+        return None
 
 
 def _rungs_rows(comparison: AnswerComparison | None) -> list[Row]:
@@ -214,13 +230,13 @@ class PuzzleView:
     check: PuzzleCheck | None = None
     beside: Sequence[Sequence[Row]] = ()
     """Parts that stand beside the board, before the first of its details, where they fit."""
-    last: Sequence[Row] = ()
-    """One that stands after it."""
+    checks: Sequence[ProgressEvent] = ()
+    """Those so far, the oldest first, which are listed after it."""
 
-    def details(self, width: int) -> list[Sequence[Row]]:
-        """All that may stand beside the board, in this order."""
+    def details(self, width: int, tries: Sequence[Row]) -> list[Sequence[Row]]:
+        """All that may stand beside the board, in this order. ``tries``: the list of the checks."""
         details = self.board.details(width)
-        return [*self.beside, *details[:1], self.last, *details[1:]]
+        return [*self.beside, *details[:1], tries, *details[1:]]
 
 
 def puzzle_page(view: PuzzleView, width: int, height: int) -> list[Row]:
@@ -232,7 +248,7 @@ def puzzle_page(view: PuzzleView, width: int, height: int) -> list[Row]:
     worth, sentence = worth_now(view.judgement, width, view.check)
     around = sum(map(len, (story, task, keys, signs, worth, sentence)))
     room = height - around - 1
-    scale, _ = largest_drawing(board, width, room)
+    scale, _ = largest_drawing(board, width, room + len(keys))
     middle = _with_drawing(view, board.rows(scale), width, room)
     for left_out in range(6):
         parts = [
@@ -261,7 +277,10 @@ def puzzle_beside(view: PuzzleView, width: int, height: int) -> list[Row]:
         scale, columns = largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
         column = min(max(LEAST_BOARD, columns + GAP), width - LEAST_TEXT)
         left = [each for shown in board.rows(scale) for each in _wrap_row(shown, column - GAP)]
-        left += _curve_rows(board, column - GAP, height - 1 - len(left))
+        empty = height - 1 - len(left)
+        curve = _curve_rows(board, column - GAP, empty)
+        lesson = [] if curve else lesson_below(view.challenge, column - GAP - MARGIN, empty)
+        left += [*curve, *(row(" " * MARGIN, *each) for each in lesson)]
     rest = width - column - 1
     count = 2 if rest >= 2 * TWO_TEXTS else 1
     room = min(rest // count - GAP * (count - 1), WIDEST_TEXT)
@@ -274,7 +293,13 @@ def puzzle_beside(view: PuzzleView, width: int, height: int) -> list[Row]:
     if drawing:
         cells, told = _table_and_rest(board.rows())
         table = [*cells, *(each for shown in told for each in _wrap_row(shown, room))]
-    below = (table, *view.beside, view.last) if count > 1 else (table, *view.details(room))
+    tries = tries_rows(view.checks, room)
+    if count > 1:
+        judgement = view.judgement
+        rungs = [] if isinstance(judgement, str) else _rungs_rows(judgement.comparison)[1:]
+        below: list[Sequence[Row]] = [table, rungs, *view.beside, tries]
+    else:
+        below = [table, *view.details(room, tries)]
     text += _stacked(below, room, height - len(text))
     shown = side_by_side([row(), *left], text, column)
     return shown if count == 1 else side_by_side(shown, _stacked(details, room, height), column + room + GAP)
@@ -322,7 +347,8 @@ def _with_drawing(view: PuzzleView, rows: Sequence[Row], width: int, height: int
     column = max(map(row_width, table), default=0) + GAP
     right = view.board.drawing(width - column, max(len(table), height - len(rest)), view.glyphs)
     if not right:
-        right = _stacked(view.details(width - column), width - column, len(table) + 1)[1:]
+        details = view.details(width - column, tries_rows(view.checks, LEAST_TOLD - 1))
+        right = _stacked(details, width - column, len(table) + 1)[1:]
     return [*(side_by_side(table, right, column) if right else table), *rest]
 
 

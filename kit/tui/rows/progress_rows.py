@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import date, timedelta
 from typing import Final
 
-from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Tone, ToneText
+from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
 from kit.document.layout import Page, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, row, row_width
 from kit.school.game.medal_in_reach import MedalInReach
@@ -52,13 +52,12 @@ def lesson_counts(shelf: Sequence[LessonEntry]) -> list[Row]:
     ]
 
 
-def export_rows(workspace: str) -> list[Row]:
+def export_blocks(workspace: str) -> list[Block]:
     """How to take everything along."""
     return [
-        row("  ", ("kit progress export FILE", "code"), " writes it to a"),
-        row("  file, for another machine or your teacher;"),
-        row("  ", ("kit progress import FILE", "code"), " reads it there."),
-        row((f"  Saved in {workspace}", "dim")),
+        Text("`kit progress export FILE` writes it to a file, for another machine or your teacher."),
+        Text("`kit progress import FILE` reads it there.", is_tight=True),
+        Text(f"Saved in {workspace}", Tone.DIM, is_tight=True),
     ]
 
 

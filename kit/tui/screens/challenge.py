@@ -36,6 +36,7 @@ from kit.tui.rows.challenge_rows import (
     challenge_page,
     challenge_standing,
     judged,
+    lesson_below,
 )
 from kit.tui.rows.key_rows import FOOTER_ROWS, bindings
 from kit.tui.rows.lesson_rows import checking
@@ -141,8 +142,10 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         page = challenge_page(self._challenge, self._file, COLUMN - GAP)
         checks = challenge_events(self._progress, self._challenge)
         standing = challenge_standing(self._challenge, checks, COLUMN - GAP)
-        room = self.app.size.height - len(page) - self._rows_below - FOOTER_ROWS - 1
-        return [*page, *standing] if len(standing) <= room else page
+        room = self.app.size.height - len(page) - self._rows_below - FOOTER_ROWS - 1 - len(standing)
+        if room < 0:
+            return page
+        return [*page, *standing, *lesson_below(self._challenge, COLUMN - GAP, room)]
 
     def _arranged(self, width: int, height: int) -> list[Row]:
         column = COLUMN if width >= 2 * COLUMN else max(map(row_width, self._rows), default=0) + GAP

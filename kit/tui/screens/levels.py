@@ -52,6 +52,7 @@ from kit.tui.rows.progress_marks import share_bar
 from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
+from kit.tui.screens.dialogue import WIDEST_BESIDE
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_pictures import company_of, ghost_paths, picture_of, scene_of
 from kit.tui.screens.picker import Picker, PickerItem
@@ -293,7 +294,7 @@ class LevelsScreen(RowsScreen[None]):
     @property
     def _rows_of_about(self) -> int:
         is_challenge = self.chosen_challenge is not None
-        return challenge_rows.most_rows_about(self.size.width) + 1 if is_challenge else ABOUT_ROWS
+        return challenge_rows.most_rows_about(self.size.width - 1) + 1 if is_challenge else ABOUT_ROWS
 
     @property
     def _middle_rows(self) -> int:
@@ -402,15 +403,18 @@ class LevelsScreen(RowsScreen[None]):
             )
             below = [row(), *about] if is_beside else []
             if is_beside:
-                room = height - len(listed) - len(below)
                 checks = challenge_events(self._progress, chosen)
-                below += challenge_rows.challenge_standing(chosen, checks, column - 1)[:room]
+                below += challenge_rows.challenge_standing(chosen, checks, column - 1)
+                below = below[: height - len(listed)]
+                width = min(width - column - 1, WIDEST_BESIDE) - MARGIN
+                lesson = challenge_rows.lesson_below(chosen, width, height - len(picture))
+                picture += [row(" " * MARGIN, *each) for each in lesson]
             listed = side_by_side([*listed, *below], picture, column)
         else:
             column = challenge_rows.NARROW_LIST
             listed = side_by_side(listed, challenge_rows.small_picture(chosen, width - column), column)
         listed = [*heading, *listed]
-        return listed, challenge_rows.about_challenge(chosen, medal, width)
+        return listed, challenge_rows.about_challenge(chosen, medal, self.size.width - 1)
 
     @property
     def _list_room(self) -> int:

@@ -275,7 +275,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         width, height = self.query_one("#panel", TextRows).size
         keys = help_page(self.screen_actions) if width >= LEAST_KEYS else ()
         shown, listed = (
-            [each for parts in told for each in broken(parts, max(1, width))] for told in (rows, keys)
+            [each for parts in told for each in broken(parts, max(1, width - 1))] for told in (rows, keys)
         )
         return [*shown, *listed] if len(shown) + len(listed) <= height else shown
 

@@ -33,8 +33,8 @@ WAY_ON: Final = "Backspace takes letters back; fewer of them may find it."
 DELETING: Final = "Backspace delete, Esc back"
 COLUMNS_AROUND: Final = 7
 """Columns of the border, of the mark of the chosen line and of the scroll bar."""
-WIDEST_NAME: Final = 24
-"""Columns of the names; after a longer one its text begins later."""
+WIDEST_NAME, WIDEST_WHERE_NARROW = 24, 16
+"""Columns of the names, and where the list is no wider than its least; after a longer one its text begins later."""
 FILTER_HINT: Final = "type to filter"
 FILTERED_FROM: Final = 8
 """Lines from which on a list says that typing filters it."""
@@ -170,7 +170,9 @@ class Picker(Dialog[str | None]):
     def replace_choices(self, choices: Sequence[PickerItem]) -> None:
         """Shows these from now on, with what is typed and highlighted as it is."""
         self._choices = tuple(choices)
-        self._width = min(max((len(choice.name) for choice in choices), default=0), WIDEST_NAME) + 2
+        is_narrow = self.is_attached and self.size.width < LIST_WIDTH + WIDEST_WHERE_NARROW
+        widest = WIDEST_WHERE_NARROW if is_narrow else WIDEST_NAME
+        self._width = min(max((len(choice.name) for choice in choices), default=0), widest) + 2
         longest = max((len(choice.text) for choice in choices), default=0) + self._width + COLUMNS_AROUND
         self._columns = max(LIST_WIDTH, min(longest, WIDEST))
         if self.is_mounted and self.is_attached:

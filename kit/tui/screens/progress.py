@@ -20,7 +20,7 @@ from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import read_bank
 from kit.tui.rows.progress_rows import (
     calendar_rows,
-    export_rows,
+    export_blocks,
     lesson_counts,
     lesson_rows,
     reach_table,
@@ -80,7 +80,7 @@ class ProgressScreen(SectionsScreen):
         is_high = self.size.height >= HIGH
         if shown := [each for each in told.badges if each.done or is_high]:
             parts.append(section_of("badges", [badge_table(shown)], columns))
-        parts.append(section("export your progress", export_rows(told.workspace), columns))
+        parts.append(section_of("export your progress", export_blocks(told.workspace), columns))
         counts = section("done so far", lesson_counts(told.shelf), columns)
         return [
             *parts,

@@ -22,7 +22,6 @@ from kit.tui.rows.challenge_rows import (
     answers_needed_rows,
     puzzle_beside,
     puzzle_page,
-    tries_rows,
 )
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.medal_rows import SMALL, medal_drawing, medal_size
@@ -38,8 +37,6 @@ ROWS_AROUND: Final = 3
 """Of the screen: the heading, and the line of keys with an empty row above it."""
 BOARD_KEYS: Final = ("move_cursor", "mark_cell", "switch_robot", "undo")
 """Actions whose meaning each board says itself."""
-TRIES: Final = 30
-"""Columns of the list of checks beside a board that its text stands above."""
 
 
 class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
@@ -99,7 +96,6 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         needed: list[Row] = []
         if not isinstance(judgement, str) and judgement.comparison is not None:
             needed = answers_needed_rows(self._bins, judgement.comparison, LEAST_TEXT)
-        tries = tries_rows(self._tries, LEAST_TEXT if is_wide else TRIES)
         place = puzzle_beside if is_wide else puzzle_page
         view = PuzzleView(
             self._challenge,
@@ -108,9 +104,9 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             self._theme.graph_glyphs,
             self._checked,
             (needed, self._drawing),
-            tries,
+            self._tries,
         )
-        return place(view, width, self.size.height - ROWS_AROUND)
+        return place(view, width - 1, self.size.height - ROWS_AROUND)
 
     @property
     def _drawing(self) -> list[Row]:

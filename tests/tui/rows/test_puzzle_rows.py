@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from kit.document.rows import row_text, row_width
-from kit.school.game.board import LIT
+from kit.school.game.board import LIT, by_value, grid_rows
 from kit.school.game.challenge import AnswerError, Challenge, judge_return
 from kit.school.game.challenge_kinds.devices import DevicesTask
 from kit.school.game.challenge_kinds.exploit import ExploitTask
@@ -25,6 +25,7 @@ from kit.tui.rows.challenge_rows import (
     PuzzleView,
     challenge_standing,
     largest_drawing,
+    lesson_below,
     next_medal,
     puzzle_beside,
     puzzle_page,
@@ -234,8 +235,12 @@ def test_the_chosen_one_of_a_list_says_what_its_medals_ask_for_and_what_teaches_
     challenge: Challenge,
 ) -> None:
     told = [row_text(each) for each in challenge_standing(challenge, [], 55)]
-    assert max(map(len, told)) <= 55
-    assert any(line.startswith("── lesson") for line in told)
+    assert max(map(len, told), default=0) <= 55
+    for room in range(12):
+        lesson = [row_text(each) for each in lesson_below(challenge, 55, room)]
+        assert len(lesson) <= room
+        assert not lesson or len(lesson) > 3, "no title without what it is about"
+        assert any(line.startswith("── lesson") for line in lesson) is (room > 9) or 0 < room < 10
     board = challenge.task.board("")
     if board is not None:
         assert any(line.startswith("keys") for line in told)
@@ -245,3 +250,27 @@ def test_the_chosen_one_of_a_list_says_what_its_medals_ask_for_and_what_teaches_
             ["silver", "at", "most", "1,900", "steps"],
             ["bronze", "at", "most", "4,000", "steps"],
         ]
+
+
+def test_the_start_is_seen_under_what_stands_on_it_and_figures_have_their_colour() -> None:
+    grid = ["####", "#SG#", "####"]
+    worth = by_value({(1, 1): 0.0, (1, 2): 1.0}, {(1, 1): "0.00", (1, 2): "1.00"})
+    for scale in (1, 2, 3, 5):
+        shown = grid_rows(grid, {(1, 1): ("@", "chosen")}, scale, worth)
+        text = "\n".join(map(row_text, shown))
+        assert "S@" in text
+        assert ("1.00" in text) is (scale >= 3)
+        assert len({len(row_text(each)) for each in shown}) == 1
+        assert ("good" in {style for each in shown for part, style in each if "1.00" in part}) is (scale >= 3)
+
+
+def test_the_checks_of_a_puzzle_take_the_columns_that_there_are() -> None:
+    challenge = next(each for each in all_challenges() if each.id == "free-lunch")
+    board = challenge.task.board("")
+    assert board is not None
+    told = "Return 139.97, the shortest way only 125.66: the reward is exploited."
+    time = "2026-03-01T10:00:00.000000+00:00"
+    event = ProgressEvent("1", time, EventKind.FINISH, challenge.id, {"medal": 1, "text": told})
+    view = PuzzleView(challenge, board, "", "braille", checks=[event])
+    rows = [row_text(each) for each in puzzle_beside(view, 200, 46)]
+    assert sum(" 139.97" in each or "exploited" in each for each in rows) <= 2

@@ -358,7 +358,7 @@ def test_on_80_columns_the_list_uses_all_rows_and_has_the_board_beside_it(
     journal: ProgressJournal, tmp_path: Path
 ) -> None:
     async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
-        await seen(pilot, "██@ . . . . . . . ██")
+        await seen(pilot, "██S@. . . . . . . ██")
         shown = rows(pilot)
         below = max(number for number, each in enumerate(shown) if each[2:].startswith("The "))
         assert shown[below + 1].startswith(FIRST.title), "what is said of it comes right below"

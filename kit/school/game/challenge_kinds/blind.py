@@ -16,6 +16,7 @@ from kit.school.game.board import (
     MOVES,
     Board,
     Cell,
+    by_value,
     cells_of_moves,
     figure_rows,
     find_cell,
@@ -125,7 +126,7 @@ class BlindBoard(MovesBoard):
         """How many of the squares where it may have begun lead to each square."""
         grid = self._blind.grid
         ends = Counter([cell, *cells_of_moves(grid, cell, self.moves)][-1] for cell in free_cells(grid))
-        counts = {cell: str(count) for cell, count in ends.items()}
+        counts = by_value(ends, {cell: str(count) for cell, count in ends.items()})
         ends_here = figure_rows("beginnings that lead to each square", grid, counts)
         return [ends_here, self.moves_made(width)]
 

@@ -20,6 +20,7 @@ from kit.school.game.board import (
     Board,
     Cell,
     History,
+    by_value,
     figure_rows,
     free_cells,
     grid_rows,
@@ -172,7 +173,9 @@ class DevicesBoard(Board):
             told_rows("letters in sight of", sights, width),
             [row(("letters that nothing sees", "dim")), row(f" {' '.join(missed) or 'none'}")],
             figure_rows(
-                "lasers that see each square", task.grid, {cell: str(count) for cell, count in lit.items()}
+                "lasers that see each square",
+                task.grid,
+                by_value(lit, {cell: str(lit[cell]) for cell in lit}),
             ),
         ]
 

@@ -19,10 +19,12 @@ from kit.school.game.board import (
     ARROWS,
     GOAL,
     MOVES,
+    START,
     WALL,
     Board,
     Cell,
     History,
+    by_value,
     distances_to,
     figure_rows,
     find_cell,
@@ -34,7 +36,7 @@ from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTa
 from kit.school.game.judgement import Judgement
 from kit.world.yaml_section import Section
 
-PIT, START = "X", "S"
+PIT: Final = "X"
 SIDES: Final = {"l": "ud", "r": "ud", "u": "lr", "d": "lr"}
 """Where a move may slip to."""
 GOAL_PAY, PIT_PAY = 1.0, -1.0
@@ -301,10 +303,11 @@ class PolicyBoard(Board):
     def rows(self, scale: int = 1) -> list[Row]:
         task, start = self._task, find_cell(self._task.grid, START)
         look = task.look(self._cursor) if self._cursor in self._policy else None
+        worth = self._worth()
         signs = {
             cell: (
                 ARROWS[arrow],
-                "warn" if task.looks_alike and task.look(cell) == look else "bold" if cell == start else "",
+                ("warn" if task.look(cell) == look else "") if task.looks_alike else worth[cell][1],
             )
             for cell, arrow in self._policy.items()
         }
@@ -313,23 +316,24 @@ class PolicyBoard(Board):
             if task.grid[cell[0]][cell[1]] == PIT:
                 signs[cell] = (PIT, "bad")
         signs[self._cursor] = (signs[self._cursor][0], "chosen")
-        worth = f"  return {value_of(task, self._policy):.3f} from S, at {start[0]},{start[1]}"
+        told = f"  return {value_of(task, self._policy):.3f} from S, at {start[0]},{start[1]}"
         return [
-            *grid_rows(task.grid, signs, scale),
+            *grid_rows(task.grid, signs, scale, worth),
             row(),
-            row((worth, "bold")),
+            row((told, "bold")),
             row((f"  {task.prices}", "dim")),
         ]
 
     def details(self, width: int) -> list[list[Row]]:
-        """What each square is worth under these arrows."""
+        return [figure_rows("return from each square", self._task.grid, self._worth())]
+
+    def _worth(self) -> dict[Cell, tuple[str, str]]:
+        """What each square is worth under these arrows, by value."""
         cells = self._task.cells
-        values = _values(self._task, [self._policy[cell] for cell in cells])
-        worth = {
-            cell: f"{value:.2f}" if math.isfinite(value) else "never"
-            for cell, value in zip(cells, values, strict=True)
-        }
-        return [figure_rows("return from each square", self._task.grid, worth)]
+        found = _values(self._task, [self._policy[cell] for cell in cells])
+        values = dict(zip(cells, map(float, found), strict=True))
+        texts = {cell: f"{each:.2f}" if math.isfinite(each) else "never" for cell, each in values.items()}
+        return by_value(values, texts)
 
 
 KIND = PolicyTask
