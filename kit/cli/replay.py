@@ -20,6 +20,7 @@ from kit.run.recording import Recording, RecordingError, load_recording, rerun
 from kit.run.recording_file import restore_recordings
 from kit.run.scenario import Scenario, find_recorded_scenario
 from kit.school.game.daily import find_playable_level
+from kit.school.game.replayed_goal import show_goal
 from kit.school.game.two_players import CannotShare, recorded_scenario
 from kit.world.problems import WorldError
 
@@ -187,7 +188,9 @@ def _export_animation(
     count = count_frames(recording, settings)
     try:
         with click.progressbar(length=count, label=file.name, file=sys.stderr) as progress:
-            export_recording(recording, scenario, file, settings, on_frame=lambda: progress.update(1))
+            export_recording(
+                recording, scenario, file, settings, on_frame=lambda: progress.update(1), prepare=show_goal
+            )
     except (ExportError, RecordingError) as error:
         messages.fail(str(error))
     except OSError as error:

@@ -64,13 +64,21 @@ def count_frames(recording: Recording, settings: AnimationSettings) -> int:
     return recording.ticks // interval + 1 + (recording.ticks % interval > 0)
 
 
-def recorded_scenes(recording: Recording, scenario: Scenario, interval: int) -> Iterator[RecordedScene]:
-    """Runs a recording again and yields its start, the scene every ``interval`` ticks, and its end.
+def recorded_scenes(
+    recording: Recording,
+    scenario: Scenario,
+    interval: int,
+    *,
+    prepare: Callable[[Session], object] = lambda session: None,
+) -> Iterator[RecordedScene]:
+    """Runs a recording again and yields its start, the scene every ``interval`` ticks, and its end. ``prepare``: called with its
+    session before it begins.
 
     Raises RecordingError where an input does not fit the world.
     """
     session = Session(scenario, seed=recording.seed, step_size=recording.step_size, always_scan=True)
     with session:
+        prepare(session)
         session.play_back(recording)
         builder = ViewBuilder(session)
         yield RecordedScene(0.0, builder.build().scene)
@@ -88,11 +96,12 @@ def export_recording(
     *,
     title: str = "",
     on_frame: Callable[[], object] = lambda: None,
+    prepare: Callable[[Session], object] = lambda session: None,
 ) -> None:
     """Writes a recording as ``.cast`` (asciicast, version 2), ``.gif`` or ``.svg``, as the file's ending says.
 
     ``scenario``: that of the recording, from ``find_scenario(recording.place, recording.case)``. ``on_frame`` is
-    called after every frame, ``count_frames`` times. The file is written whole or not at all.
+    called after every frame, ``count_frames`` times; ``prepare`` with the session before it begins. The file is written whole or not at all.
 
     Raises ExportError for another ending or too long a run, RecordingError where an input does not fit the world,
     and OSError if the file cannot be written.
@@ -119,7 +128,9 @@ def export_recording(
     columns, rows = settings.size or DEFAULT_SIZES[ending]
 
     def scenes() -> Iterator[RecordedScene]:
-        for shown in recorded_scenes(recording, scenario, _ticks_between(recording, settings)):
+        for shown in recorded_scenes(
+            recording, scenario, _ticks_between(recording, settings), prepare=prepare
+        ):
             yield shown
             on_frame()
 

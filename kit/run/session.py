@@ -12,7 +12,7 @@ from datetime import datetime
 from functools import cache
 from pathlib import Path
 from types import TracebackType
-from typing import Final, Protocol, Self
+from typing import TYPE_CHECKING, Final, Protocol, Self
 
 from kit.controllers import ControllerFile, kit_controllers
 from kit.host.failure import Failure
@@ -32,6 +32,9 @@ from kit.run.recording import Playback, Recording
 from kit.run.runner import Runner
 from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
+
+if TYPE_CHECKING:
+    from kit.run.view import View
 
 STANDS_STILL_M: Final = 0.01
 """A robot that has driven less than this stands still [m]."""
@@ -97,6 +100,8 @@ class Session:
         self.runner = Runner(simulation, self.graph, offered_truths=offered_truths, is_hidden=is_hidden)
         self.additions: list[SceneAddition] = []
         """What the view draws beside the world."""
+        self.shown: Callable[[View], View] = lambda view: view
+        """What is shown of a view: a game has targets of its own. Called in the thread that ticks."""
         self.metrics = MetricsRecorder.for_scenario(scenario)
         self.runner.observers.append(self.metrics)
         self._watch: ConnectionWatch | None = None

@@ -109,7 +109,7 @@ class ViewBuilder:
         if driven is not None:
             self._trail.add(driven.pose.x, driven.pose.y)
         scenario = session.scenario
-        return View(
+        view = View(
             title=scenario.case.name if scenario.case is not None else scenario.title,
             scene=self._scene(snapshot),
             tick=simulation.tick,
@@ -125,6 +125,7 @@ class ViewBuilder:
             failure=session.failure,
             messages=tuple(session.messages)[-self._messages :],
         )
+        return session.shown(view)
 
     def _scene(self, snapshot: _Snapshot) -> Scene:
         case, drivers = self._session.scenario.case, self._session.scenario.drivers

@@ -34,6 +34,7 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, RaceFinish, middle_drive, run_again
 from kit.school.game.references import reference_seconds
+from kit.school.game.replayed_goal import show_goal
 from kit.school.game.shared_answers import publish_answers
 from kit.school.game.shared_drives import digest_of
 from kit.school.game.starts import film_scenario
@@ -230,7 +231,8 @@ def save_film(card: Path, level: GameLevel, recording: Recording) -> Path:
     """Writes a drive as a moving picture beside its card. Raises OSError and ExportError."""
     file = card.with_suffix(".gif")
     settings = AnimationSettings(speed=2.0)
-    export_recording(recording, film_scenario(level, recording.seed), file, settings, title=level.title)
+    scenario = film_scenario(level, recording.seed)
+    export_recording(recording, scenario, file, settings, title=level.title, prepare=show_goal)
     return file
 
 

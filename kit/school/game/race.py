@@ -36,6 +36,7 @@ from kit.sim.simulation import STEP_SIZE_S, Simulation
 
 if TYPE_CHECKING:
     from kit.learning.policies.policy import Policy
+    from kit.run.view import View
 
 
 DOCK_RADIUS: Final = 0.25
@@ -203,6 +204,16 @@ class RaceReferee(Observer):
             is_apart=self.objective.is_apart,
             shortfall=self._shortfall if reached_s is None else "",
         )
+
+    def shown(self, view: View) -> View:
+        """A view of the world with the level's targets and bumps in place of those of the map's case."""
+        metrics = replace(
+            view.metrics,
+            bumps=self.finish.collisions,
+            target_m=self.objective.target_m,
+            reached_s=self.objective.reached_s,
+        )
+        return replace(view, metrics=metrics, scene=replace(view.scene, targets=self.objective.discs))
 
     @property
     def _shortfall(self) -> str:

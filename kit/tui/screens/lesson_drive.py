@@ -65,9 +65,11 @@ class ReplayScreen(WatchScreen):
     def _session(self) -> Session:
         """Called in the helper thread."""
         from kit.run.session import Session
+        from kit.school.game.replayed_goal import show_goal
 
         told = self._recording
         session = Session(self._place, seed=told.seed, step_size=told.step_size, always_scan=True)
+        show_goal(session)
         session.play_back(told)
         return session
 

@@ -219,7 +219,7 @@ class LevelDrive(WatchScreen):
         scenario = self._level.find_scenario()
         self._scenario: Scenario = scenario
         self._nothing_seen = LaserMap(world_bounds(scenario.world)).cells
-        self._preview = RaceReferee(self._level, scenario).objective
+        self._preview = RaceReferee(self._level, scenario)
         if self._race_program is not None:
             self.host.open_session(self._open_race, lambda session: self.host.pacing.factor)
             self.observe_agent()
@@ -327,18 +327,11 @@ class LevelDrive(WatchScreen):
 
     def _view_arrived(self, view: View) -> None:
         """Replaces the targets and bumps of the map's case by the level's, in the world's thread."""
-        referee = self._referee
-        objective = self._preview if referee is None else referee.objective
-        distance = objective.target_m
-        is_hidden = self._level.conditions.fog and distance is not None and distance > SIGHT
-        metrics = replace(
-            view.metrics,
-            bumps=view.metrics.bumps if referee is None else referee.finish.collisions,
-            target_m=None if is_hidden else distance,
-            reached_s=objective.reached_s,
-        )
-        scene = replace(view.scene, targets=objective.discs)
-        super()._view_arrived(replace(view, metrics=metrics, scene=scene))
+        view = (self._referee or self._preview).shown(view)
+        distance = view.metrics.target_m
+        if self._level.conditions.fog and distance is not None and distance > SIGHT:
+            view = replace(view, metrics=replace(view.metrics, target_m=None))
+        super()._view_arrived(view)
 
     def _newest_scene(self) -> Scene:
         scene = super()._newest_scene()
