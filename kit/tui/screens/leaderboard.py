@@ -37,7 +37,7 @@ from kit.tui.rows.level_card_rows import Company, level_card
 from kit.tui.rows.progress_rows import reach_table
 from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.level_pictures import picture_of
+from kit.tui.screens.level_pictures import picture_of, picture_rows
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
@@ -131,7 +131,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         nearest = _rows_of(reach_table(medals_in_reach(own)[:MOST_IN_REACH]), columns)
         rows = [
             ruled_title("today's maze", columns, level.title),
-            *map(row, picture_of(level, columns, MAP_ROWS, glyphs)),
+            *picture_rows(picture_of(level, columns, MAP_ROWS, glyphs)),
             row(),
             *(times or [row(("Nobody on the board has driven it yet.", "dim"))]),
             row(),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import groupby
 from typing import Final
 
 import numpy as np
@@ -21,6 +22,7 @@ from kit.run.view import ViewBuilder
 from kit.school.game.ghosts import REFERENCE, Ghost
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import DriverKind
+from kit.school.game.references import reference_seconds
 from kit.school.lessons.records import Lesson
 from kit.tui.rows.level_card_rows import Company, Rival, best_splits
 
@@ -76,6 +78,15 @@ def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[s
     )
 
 
+def picture_rows(picture: Sequence[str]) -> list[Row]:
+    """A small picture with its walls dim, its targets and its start in the styles that both have elsewhere."""
+    styles = dict.fromkeys(TARGET_SIGNS.values(), "good") | {"S": "bold"}
+    return [
+        row(*(("".join(run), style) for style, run in groupby(line, lambda sign: styles.get(sign, "dim"))))
+        for line in picture
+    ]
+
+
 def task_picture(task: str, columns: int, rows: int, glyphs: str) -> list[Row]:
     """The map of a learning task with its starts and targets. Takes a moment: the learning side is imported."""
     from kit.learning.authoring.task_text import build_case_scene
@@ -88,7 +99,7 @@ def task_picture(task: str, columns: int, rows: int, glyphs: str) -> list[Row]:
 
 
 def pictures_of(levels: Sequence[GameLevel], width: int, height: int, glyphs: str) -> list[Row]:
-    """Small pictures of levels below their titles, two or three beside each other."""
+    """Small pictures of levels below their titles and the reference drives' times, two or three beside each other."""
     across = 3 if width >= ROOM_FOR_THREE else 2
     columns, rows = width // across, height // math.ceil(len(levels) / across)
     made: list[Row] = []
@@ -96,7 +107,10 @@ def pictures_of(levels: Sequence[GameLevel], width: int, height: int, glyphs: st
         line: list[Row] = [row()] * rows
         for place, level in enumerate(levels[start : start + across]):
             picture = picture_of(level, columns - PICTURE_GAP, rows - 2, glyphs)
-            shown = [row((level.title, "bold")), *map(row, picture)]
+            seconds = reference_seconds(level)
+            told = "" if seconds is None else f"  reference {seconds:.2f} s"
+            told = told if len(level.title) + len(told) <= columns - PICTURE_GAP else ""
+            shown = [row((level.title, "bold"), (told, "dim")), *picture_rows(picture)]
             line = side_by_side(line, shown, place * columns) if place else shown
         made += [*line, row()]
     return made

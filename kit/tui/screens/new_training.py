@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 WIDE: Final = 110
 """Columns from which on the task stands beside the settings."""
-LIST_WIDTH: Final = 60
+LIST_WIDTH, WIDEST_LIST = 60, 84
 """Columns of the settings, then."""
 FIRST_TASK: Final = "turn"
 """The task that is offered first."""
@@ -131,13 +131,12 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (WIDE, "-wide")]  # noqa: RUF012 - Textual's own attribute
-    DEFAULT_CSS = f"""
-    NewTrainingScreen {{ layout: vertical; }}
-    NewTrainingScreen #heading, NewTrainingScreen #note, NewTrainingScreen #keys {{ height: 1; }}
-    NewTrainingScreen #middle {{ height: 1fr; }}
-    NewTrainingScreen TaskPreview {{ display: none; }}
-    NewTrainingScreen.-wide #body {{ width: {LIST_WIDTH}; }}
-    NewTrainingScreen.-wide TaskPreview {{ display: block; width: 1fr; }}
+    DEFAULT_CSS = """
+    NewTrainingScreen { layout: vertical; }
+    NewTrainingScreen #heading, NewTrainingScreen #note, NewTrainingScreen #keys { height: 1; }
+    NewTrainingScreen #middle { height: 1fr; }
+    NewTrainingScreen TaskPreview { display: none; }
+    NewTrainingScreen.-wide TaskPreview { display: block; width: 1fr; }
     """
 
     def __init__(self, theme: Theme, runs: Path, task: str = FIRST_TASK) -> None:
@@ -166,7 +165,8 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
     def _show(self) -> None:
         width = self.size.width
         preview = self.query_one(TaskPreview)
-        beside = LIST_WIDTH if preview.display else width
+        beside = max(LIST_WIDTH, min(width * 2 // 5, WIDEST_LIST)) if preview.display else width
+        self.query_one("#body").styles.width = beside if preview.display else None
         rows = settings(self.settings.entries(), self._chosen, beside)
         if preview.display:
             preview.tell(self.settings)

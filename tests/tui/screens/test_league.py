@@ -21,8 +21,10 @@ from kit.school.game.race import DriverKind
 from kit.tui.screens import league as league_screen
 from kit.tui.screens.league import STANDINGS_WIDTH, LeagueScreen
 from kit.tui.screens.level_drive import LeftError
+from kit.tui.screens.level_pictures import pictures_of
 from kit.tui.screens.match_replay import MatchReplayScreen
 from kit.workspace import open_workspace
+from tests.kit_content import kit_levels
 from tests.school.game.league.test_league import GIVES_UP, LASER, make_league, run
 from tests.tui.lesson_stage import row_text, seen, stage, text, until
 
@@ -66,6 +68,14 @@ def test_a_wide_screen_shows_what_is_driven_in_a_league_that_nobody_has_entered(
         assert "◎" in text(pilot), "the targets of the maps"
 
     stage(lambda theme: LeagueScreen(theme, league, workspace), scene, size=(200, 50))
+
+
+def test_a_small_picture_has_its_walls_dim_and_its_target_in_its_colour() -> None:
+    shown = pictures_of(kit_levels()[:2], 90, 12, "braille")
+    styles = {text.strip(): style for each in shown for text, style in each if text.strip()}
+    assert styles["◎"] == "good"
+    assert styles["S"] == "bold"
+    assert {style for text, style in styles.items() if set(text) & set("█▀▄▌▐")} == {"dim"}
 
 
 @pytest.mark.long

@@ -147,3 +147,24 @@ def test_a_large_screen_shows_more_entries_and_breaks_no_line_that_fits() -> Non
         assert len(whole) > pilot.app.size.height // 2
 
     stage(lambda theme: Picker("Things", choices), scene, size=(200, 50))
+
+
+@pytest.mark.parametrize(("columns", "is_narrow"), [(80, True), (120, False)])
+def test_on_80_columns_one_long_name_takes_no_columns_from_the_texts_of_the_others(
+    columns: int, is_narrow: bool
+) -> None:
+    choices = [PickerItem("a", "a name of many letters", "long"), PickerItem("b", "short", "its text")]
+
+    async def run() -> str:
+        app = App[None]()
+        async with app.run_test(size=(columns, 24)) as pilot:
+            app.push_screen(Picker("Things", choices))
+            await pilot.pause()
+            shown = app.screen._compositor.render_strips()
+            return next(
+                line for strip in shown if "its text" in (line := "".join(part.text for part in strip))
+            )
+
+    line = asyncio.run(run())
+    gap = line.index("its text") - line.index("short")
+    assert (gap <= 18) is is_narrow

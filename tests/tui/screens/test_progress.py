@@ -9,10 +9,11 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
-from kit.document.rows import row_text
+from kit.document.layout import Page, rows_of
+from kit.document.rows import row_text, row_width
 from kit.school.badges import Badge
 from kit.school.progress import EventKind, ProgressJournal
-from kit.tui.rows.progress_rows import BUSY, STARS_LEGEND, calendar_rows
+from kit.tui.rows.progress_rows import BUSY, STARS_LEGEND, calendar_rows, export_blocks
 from kit.tui.screens.progress import ProgressScreen, ProgressSummary
 from kit.tui.student_store import StudentStore
 from tests.tui.lesson_folder import write_lessons
@@ -71,6 +72,13 @@ def test_a_high_screen_names_the_badges_that_are_not_yet_begun(size: tuple[int, 
         assert ("0 of 10" in text(pilot)) is (size[1] == 50)
 
     stage(lambda theme: ProgressScreen(told), scene, size=size)
+
+
+def test_how_to_export_is_no_narrower_than_its_column() -> None:
+    for columns, count in ((116, 3), (76, 4)):
+        shown = rows_of(export_blocks("~/robot-kit"), Page(columns))
+        assert len(shown) == count
+        assert max(map(row_width, shown)) <= columns
 
 
 def test_the_calendar_ends_today_and_shows_how_busy_each_day_was() -> None:

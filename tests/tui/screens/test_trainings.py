@@ -24,7 +24,7 @@ from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training_sweep import TrainingSweep
 from kit.tui.rows.training_list_rows import AFTERWARDS
 from kit.tui.screens import trainings
-from kit.tui.screens.new_training import NewTrainingScreen, TrainingChoices
+from kit.tui.screens.new_training import ABOUT, NewTrainingScreen, TrainingChoices
 from kit.tui.screens.trainings import TrainingsScreen
 from tests.tui.lesson_stage import ROBOT, rows, seen, stage, text, until
 
@@ -313,6 +313,8 @@ def test_the_task_stands_beside_the_form_where_there_is_room(tmp_path: Path, siz
         assert "ended" in " ".join(shown.split())
         (start,) = {each.index(" S ") for each in rows(pilot) if " S " in each and "is a start" not in each}
         assert start > 60
+        about = ABOUT["task"]
+        assert (about in shown) is (size[0] == 200), "one line where there is room"
 
     stage(lambda theme: NewTrainingScreen(theme, tmp_path), scene, size=size)
 
