@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from textual.screen import Screen
 
     from kit.host.job_folder import JobExecutor
-    from kit.school.game.league.league import League
+    from kit.school.game.league.league import League, LeagueJob
     from kit.school.game.league.standings import Standings
     from kit.tui.app import KitApp
 
@@ -77,7 +77,7 @@ def command(context: click.Context, workspace: Path | None, folder: Path | None,
     other robot is; it has a namespace of its own and can use no name outside. Each second counts against the catcher, or
     against the other one while that alone stands still; each pair plays twice. Programs are confined as when they are graded.
 
-    Whoever enters first meets the programs of the house, three that come with the kit: they take no place and win no title,
+    Whoever enters first meets the programs of the house, three that come with the kit: they win no title,
     and ``kit league run --no-house`` leaves them out.
 
     Ratings follow Bradley and Terry: 400 points more mean ten times as many wins. Only the commands of a drive are stored:
@@ -188,9 +188,6 @@ def run(context: click.Context, level: str | None, house: bool | None, executor:
 
     Exit code: 0 all matches are driven; 1 some are not; 2 the league cannot be run.
     """
-    from kit.learning.training.run_upkeep import format_seconds
-    from kit.school.game.league.league import seconds_left
-
     with _open_league(context) as (league, _):
         if league.is_mine:
             programme = league.programme()
@@ -202,26 +199,33 @@ def run(context: click.Context, level: str | None, house: bool | None, executor:
         except OSError as error:
             messages.fail(messages.describe_error(error))
         jobs = [each for each in league.jobs() if each.key in keys]
-        done: set[str] = set()
-        begun_s = time.monotonic()
-
-        def count(key: str) -> None:
-            done.add(key)
-            left_s = seconds_left(jobs, done, time.monotonic() - begun_s)
-            if sys.stderr.isatty() and left_s is not None:
-                told = f"{len(done)} of {len(keys)} driven, about {format_seconds(left_s)} left"
-                click.echo(f"\r{told:<60}", nl=False, err=True)
-
         try:
-            executor.run(league, keys, count)
+            executor.run(league, keys, _counter(jobs, "driven"))
         except (ExecutorUnavailable, OSError) as error:
             messages.fail(messages.describe_error(error))
-        if done and sys.stderr.isatty():
-            click.echo("", err=True)
         _print_standings(league)
         if left := league.waiting():
             messages.say(f"{counted(len(left), 'job')} left no result: run it again.", err=True)
             raise SystemExit(INCOMPLETE)
+
+
+def _counter(jobs: Sequence[LeagueJob], word: str) -> Callable[[str], None]:
+    """A function that is called with the key of each job that is done, and tells a terminal how many are and how long the rest
+    takes. ``word``: what they are then."""
+    from kit.learning.training.run_upkeep import format_seconds
+    from kit.school.game.league.league import seconds_left
+
+    done: set[str] = set()
+    begun_s = time.monotonic()
+
+    def count(key: str) -> None:
+        done.add(key)
+        left_s = seconds_left(jobs, done, time.monotonic() - begun_s)
+        if sys.stderr.isatty() and left_s is not None:
+            told = f"{len(done)} of {len(jobs)} {word}, about {format_seconds(left_s)} left"
+            click.echo(f"\r{told:<60}", nl=len(done) == len(jobs), err=True)
+
+    return count
 
 
 @command.command("matches")
@@ -279,7 +283,7 @@ def verify(context: click.Context) -> None:
     from kit.school.game.league.verification import differing_jobs
 
     with _open_league(context) as (league, _):
-        found = differing_jobs(league)
+        found = differing_jobs(league, _counter(league.jobs(), "compared"))
         verdicts = {
             "the programs drive something other than the result shows.": found.differing,
             "driven something else each time, as with random numbers that have no seed: nothing can be compared.": (

@@ -118,9 +118,16 @@ class LeagueScreen(RowsScreen[None]):
         self._asked += 1
         asked, worker = self._asked, get_current_worker()
 
+        begun_s, first_unread = time.monotonic(), 0
+
         def show_so_far(standings: Standings) -> None:
+            nonlocal begun_s, first_unread
             self._end_if_left(worker)
-            self._show_so_far(standings)
+            if standings.unread > first_unread:  # what was judged before needs no time
+                begun_s, first_unread = time.monotonic(), standings.unread
+            read = first_unread - standings.unread
+            left_s = (time.monotonic() - begun_s) * standings.unread / read if read else None
+            self._show_so_far(standings, left_s)
 
         try:
             async with self._reading:
@@ -150,14 +157,19 @@ class LeagueScreen(RowsScreen[None]):
             found = (number for number, each in enumerate(self._matches) if each.jobs == jobs)
             self._match = next(found, None)
 
-    def _show_so_far(self, standings: Standings) -> None:
-        """Shows what has been read at first, from the thread that reads; later what is whole stays until it has been read anew."""
+    def _show_so_far(self, standings: Standings, left_s: float | None) -> None:
+        """Shows what has been read at first, from the thread that reads; later what is whole stays until it has been read anew.
+        ``left_s``: how long the rest takes [s], once that is known."""
         if self._standings is not None and not self._standings.unread:
             return
 
         def show() -> None:
             self._take(standings)
-            self._note = ""
+            self._note = (
+                ""
+                if left_s is None or not standings.unread
+                else f"Running the drives again: about {clock(left_s)} left."
+            )
             self._show()
 
         self.app.call_from_thread(show)
@@ -174,7 +186,7 @@ class LeagueScreen(RowsScreen[None]):
             return
         levels = (*self._standings.programme.races, *self._standings.programme.tag)
         width, height = self.size.width - STANDINGS_WIDTH, self.size.height - 5
-        if self._standings.places:
+        if self._standings.own_places:
             width, height = self.size.width - 3, height - len(self._tables(self._standings, *self._room))
         glyphs = self._theme.terminal.glyphs.value
         is_there = height >= LEAST_MAP_ROWS
@@ -186,6 +198,11 @@ class LeagueScreen(RowsScreen[None]):
     @property
     def _entrants(self) -> list[str]:
         return [] if self._standings is None else [each.entry.name for each in self._standings.places]
+
+    @property
+    def _has_own(self) -> bool:
+        """Whether anybody but the house is entered: else what is driven is shown in place of matches."""
+        return self._standings is not None and bool(self._standings.own_places)
 
     @property
     def _at(self) -> int:
@@ -213,7 +230,7 @@ class LeagueScreen(RowsScreen[None]):
             [at_both_edges(row((title, "bold")), row((place if has_room else "", "dim")), width)]
         )
         tables = [] if standings is None else self._tables(standings, *self._room)
-        below = [row(), *(row("   ", *each) for each in self._maps)] if self._entrants and self._maps else []
+        below = [row(), *(row("   ", *each) for each in self._maps)] if self._has_own and self._maps else []
         has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
         self._rows("body").show([*tables, *below] if has_room else tables)
         told = "" if self._note else self._told_of_match
@@ -261,6 +278,7 @@ class LeagueScreen(RowsScreen[None]):
             if is_wide and grid.rows and len(left) + len(below) + 1 <= height:
                 left += [row(), *below]
         table = matches_table(self._matches, name)
+        has_maps = not self._has_own and self._match is None and is_wide
         right: list[Row] = [row(), row((f"   Matches of {name}" if name else "", "bold")), row()]
         if table.rows:
             right_width = width - left_width if is_wide else width
@@ -270,7 +288,7 @@ class LeagueScreen(RowsScreen[None]):
                 right += list_rows(table, right_width, height - len(right), self._match)
         elif name:
             right.append(row(("   None has been driven yet.", "dim")))
-        else:
+        if has_maps:
             right = [row(), *self._maps]
         if is_wide:
             return side_by_side(left, right, left_width)

@@ -17,6 +17,8 @@ from kit.school.game.league.league_blocks import result_sentence
 from kit.school.game.league.standings import Match, MatchFilm
 from kit.school.game.league.tag_game import TOLD_TICKS, tag_scenario
 from kit.school.game.starts import STARTS, film_scenario
+from kit.school.game.two_players import SharedGameState, SharedMode
+from kit.tui.rows.shared_game_rows import players_card
 from kit.tui.screens.lesson_drive import ReplayScreen
 from kit.tui.screens.level_pictures import ghost_paths
 from kit.tui.theme import Theme
@@ -28,10 +30,14 @@ LEVEL_S: Final = 0.05
 class MatchReplayScreen(ReplayScreen):
     """One of the two is the robot, the other has a letter: in a race, where each has driven alone, on a dotted way."""
 
+    has_card = True
+
     def __init__(self, theme: Theme, match: Match, film: MatchFilm) -> None:
         names = tuple(each.name for each in match.entrants)
         self._match = match
         self._film = film
+        self._shows_card = True
+        """Whether there was room for the players below the robot's figures."""
         if match.is_tag:
             self._robot = 0
             place, recording = tag_scenario(match.level), film.recordings[0]
@@ -58,6 +64,28 @@ class MatchReplayScreen(ReplayScreen):
     def _letter(self) -> str:
         return self._lettered[:1].upper()
 
+    def _state(self, tick: int) -> SharedGameState | None:
+        """Of tag: how it stood at a tick."""
+        states = self._film.states
+        if not states:
+            return None
+        names = tuple(each.name for each in self._match.entrants)
+        return replace(states[min(tick // TOLD_TICKS, len(states) - 1)], names=names)
+
+    def _panel_rows(self, view: View) -> tuple[Row, ...]:
+        """Of tag the players first, as in a game that is played, and the first robot's figures where there is room for both."""
+        rows = super()._panel_rows(view)
+        panel = self._rows("panel").content_size
+        return rows if self._shows_card else tuple(self._card(panel.width - 1, panel.height))
+
+    def _card(self, width: int, room: int) -> list[Row]:
+        state = None if self.view is None else self._state(self.view.tick)
+        if state is None:
+            return []
+        card = players_card(SharedMode.TAG, state, None, width)
+        self._shows_card = len(card) <= room
+        return card if self._shows_card else []
+
     def message_rows(self, view: View) -> tuple[Row, ...]:
         first, second = ("1", "2") if self._match.is_tag else ("the robot", f"the letter {self._letter}")
         who = row(f" {first}: ", (self._driven, "bold"), f"   {second}: ", (self._lettered, "bold"))
@@ -70,14 +98,13 @@ class MatchReplayScreen(ReplayScreen):
 
     def _standing(self, view: View) -> str:
         """Who is ahead at this instant."""
-        states = self._film.states
-        if states:
-            state = states[min(view.tick // TOLD_TICKS, len(states) - 1)]
-            against = ", ".join(
-                f"{score:.1f} s against {entry.name}"
-                for score, entry in zip(state.scores, self._match.entrants, strict=True)
+        state = self._state(view.tick)
+        if state is not None:
+            penalties = ", ".join(
+                f"{name}: {score:.1f} s penalty"
+                for score, name in zip(state.scores, state.names, strict=True)
             )
-            return f"{self._match.entrants[state.catcher or 0].name} catches; {against}"
+            return f"{state.names[state.catcher or 0]} catches; {penalties}"
         behind = self._behind[min(view.tick // TOLD_TICKS, len(self._behind) - 1)] if self._behind else None
         if behind is None:
             return "They drive different ways."

@@ -177,8 +177,10 @@ def test_a_game_of_tag_is_replayed_without_a_target(tmp_path: Path) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         screen = pilot.app.screen
         assert isinstance(screen, MatchReplayScreen)
-        await seen(pilot, "distance")
+        await seen(pilot, "players")
         assert "target" not in text(pilot)
+        assert all(f"{number} {name}" in text(pilot) for number, name in ((1, "laser"), (2, "stands")))
+        assert "s penalty" in text(pilot)
         assert screen.view is not None
         arrived = replace(screen.view, metrics=DriveMetrics(target_m=0.0, reached_s=14.3))
         screen._view_arrived(arrived)

@@ -70,7 +70,7 @@ class Entry:
 
     @property
     def is_house(self) -> bool:
-        """Whether it comes with the kit, and so takes no place."""
+        """Whether it comes with the kit, and so wins no title."""
         return bool(self.house_program)
 
     def differs_from(self, program: bytes) -> bool:

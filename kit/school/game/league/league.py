@@ -16,10 +16,10 @@ import math
 import os
 import stat
 import threading
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import combinations
 from pathlib import Path
 from random import Random
@@ -76,6 +76,10 @@ WALL_LIMIT_S: Final = 300.0
 """Of one drive [s of wall clock]."""
 MAX_JUDGED: Final = 20_000
 """Results whose judgement is kept in memory."""
+HOUSE_RESULTS: Final = Path(__file__).with_name("house_results")
+"""What the programs of the house drive on the levels of a new league's races: results as in a league's folder, and what came of
+each, which a test judges again."""
+HOUSE_JUDGED: Final = HOUSE_RESULTS / "judged.json"
 _RUNNING_AGAIN: Final = threading.Lock()
 """Held while recordings are run again: threads that compute side by side hold each other up."""
 
@@ -212,12 +216,14 @@ class League(JobFolder):
         return [each for each in self.entries() if not each.problem]
 
     def jobs(self) -> list[LeagueJob]:
-        """All that has to be driven: none while nobody meets anybody. Races of short levels come first, so that there are soon
-        matches and a rating. Raises LeagueError."""
+        """All that is driven: nothing while nobody meets anybody; of the house alone, what comes with the kit. Races of short
+        levels come first, so that there are soon matches and a rating. Raises LeagueError."""
         entrants, programme = self.entrants(), self.programme()
         pairs = pairs_of(entrants)
-        racing = [each for each in entrants if any(each in pair for pair in pairs)]
+        racing = entrants if len(entrants) > 1 else []
         drives = [drive_job(level, each) for level in programme.races for each in racing]
+        if not pairs:
+            drives = [each for each in drives if each.key in house_judgements()]
         games = [
             tag_job(level, *players)
             for level in programme.tag
@@ -297,9 +303,11 @@ class League(JobFolder):
         content = self._read_result(job)
         if content is None:
             return None
+        if (shipped := house_judgements().get(job.key)) is not None:
+            return replace(shipped, is_same_platform=read_shared_drives(content).is_same_platform)
         with _RUNNING_AGAIN:
             if self.judgements is None:
-                return _judge(content, job.level, len(job.entrants))
+                return judge_result(content, job.level, len(job.entrants))
             return _judge_once(self.judgements, content, job.level, len(job.entrants))
 
     def unjudged(self) -> list[str]:
@@ -307,7 +315,7 @@ class League(JobFolder):
         LeagueError."""
         keys = []
         for job in self.jobs() if self.judgements is not None else ():
-            content = self._read_result(job)
+            content = None if job.key in house_judgements() else self._read_result(job)
             if content is not None and self.judgements is not None:
                 file = _judgement_file(self.judgements, content, job.level, len(job.entrants))
                 keys += [] if file.exists() else [job.key]
@@ -337,8 +345,10 @@ class League(JobFolder):
             raise LeagueError(f"This match cannot be shown: {error}.") from None
 
     def _read_result(self, job: LeagueJob) -> bytes | None:
-        """The content of a job's result; None if there is none of the owner's."""
+        """The content of a job's result: of the house alone the kit's, where it has one; None if there is none of the owner's."""
         try:
+            if job.key in house_judgements():
+                return (HOUSE_RESULTS / f"{job.key}.npz").read_bytes()
             with open_plain_file(self.result_file(job.key), follows_links=False) as opened:
                 content = opened.read(MAX_FILE_BYTES + 1)
                 return content if os.fstat(opened.fileno()).st_uid == self.owner else None
@@ -367,7 +377,7 @@ def own_league(workspace: Workspace, folder: Path | None = None) -> League:
 
 
 def pairs_of(entrants: Sequence[Entry]) -> list[tuple[Entry, Entry]]:
-    """Who meets whom: all each other, but for two of the house."""
+    """Who plays tag with whom: all with each other, but for two of the house, which only race each other."""
     return [pair for pair in combinations(entrants, 2) if not all(each.is_house for each in pair)]
 
 
@@ -484,7 +494,7 @@ def _judge_once(folder: Path, content: bytes, level: GameLevel, players: int) ->
     file = _judgement_file(folder, content, level, players)
     with suppress(OSError, ValueError, KeyError, TypeError):
         return _read_judgement(read_result(file))
-    judged = _judge(content, level, players)
+    judged = judge_result(content, level, players)
     with suppress(OSError):  # it is judged again next time
         make_private_folder(folder)
         write_atomically(file, json.dumps({"judged": None if judged is None else asdict(judged)}).encode())
@@ -499,6 +509,15 @@ def _judgement_file(folder: Path, content: bytes, level: GameLevel, players: int
     return folder / f"{hashlib.sha256(told.encode()).hexdigest()[:32]}.json"
 
 
+@cache
+def house_judgements() -> Mapping[str, JudgedJob]:
+    """What came of the results that come with the kit, by their jobs' keys."""
+    found = {
+        key: _read_judgement({"judged": told}) for key, told in json.loads(HOUSE_JUDGED.read_text()).items()
+    }
+    return {key: judged for key, judged in found.items() if judged is not None}
+
+
 def _read_judgement(content: dict[str, Any]) -> JudgedJob | None:
     """What ``_judge_once`` has kept. Raises ValueError, KeyError or TypeError for anything else."""
     judged = content["judged"]
@@ -509,7 +528,7 @@ def _read_judgement(content: dict[str, Any]) -> JudgedJob | None:
     return JudgedJob(finishes, scores, judged["winner"], remarks, bool(judged["is_same_platform"]))
 
 
-def _judge(content: bytes, level: GameLevel, players: int) -> JudgedJob | None:
+def judge_result(content: bytes, level: GameLevel, players: int) -> JudgedJob | None:
     """Judges the content of a result; None if it is refused."""
     with suppress(DriveRefused, RecordingError, ValueError):
         return _rerun(content, level, players)[0]

@@ -15,7 +15,7 @@ from kit.school.game.two_players import TAG_RULE
 TEXT = CellStyle.TEXT
 MOST_OPPONENTS: Final = 4
 """Of an entrant, in the table of its matches by level."""
-HOUSE: Final = f"{join_names(tuple(SPEEDS))}, the programs of the house, which everybody meets, and whatever others enter."
+HOUSE: Final = f"{join_names(tuple(SPEEDS))}, the programs of the house, which have raced each other, and whatever others enter."
 
 
 class LeagueWords(NamedTuple):
@@ -45,7 +45,7 @@ def summary_blocks(standings: Standings, words: LeagueWords = COMMANDS) -> list[
     """Who is the champion, what is still to be run, and who takes no part."""
     blocks: list[Block] = []
     champion, own = standings.champion, standings.own_places
-    if len(standings.places) < 2:
+    if not own or len(standings.places) < 2:
         alone = "Nobody is" if not own else f"{own[0].entry.name} alone is"
         has_house = standings.programme.has_house
         blocks.append(Text(f"{alone} entered{'.' if has_house else ': a league needs two.'}"))
@@ -123,7 +123,7 @@ def standings_table(standings: Standings) -> Table:
         Column("drawn"),
         Column("lost"),
     )
-    count = sum(not each.entry.is_house for each in standings.places)
+    count = len(standings.places)
     rows = tuple(
         (*((f"{each.division}",) if has_divisions else ()), *_place_cells(each, count))
         for each in standings.places
@@ -132,8 +132,8 @@ def standings_table(standings: Standings) -> Table:
 
 
 def _place_cells(each: Place, count: int) -> tuple[Cell, ...]:
-    """``count``: of those that take a place, among which the number is."""
-    number = "" if each.entry.is_house or count < 2 else f"{each.number} of {count}"
+    """``count``: of all places."""
+    number = "" if count < 2 or not _has_played(each) else f"{each.number} of {count}"
     name = ToneText(each.entry.name, Tone.BOLD if each.entry.is_mine else Tone.PLAIN)
     rating = each.rating
     points, interval = (rating.points, (rating.low, rating.high)) if _has_played(each) else (None, None)

@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Final
 
 import numpy as np
@@ -70,7 +71,7 @@ class Place:
     drawn: int
     lost: int
     number: int
-    """Its place, from 1; of the house, which takes none, the number of those above."""
+    """Its place, from 1."""
     division: int
     """From 1."""
 
@@ -154,20 +155,20 @@ def _standings_of(
     """The standings by the jobs that have been judged; None: they have not been run."""
     entrants = [each for each in entries if not each.problem]
     pairs, matches = pairs_of(entrants), []
-    if not pairs:  # the house waits for somebody
-        entrants = [each for each in entrants if not each.is_house]
-    for first, second in pairs:
+    for first, second in combinations(entrants, 2):
         for level in programme.races:
             drives = drive_job(level, first), drive_job(level, second)
             one, other = (judged.get(drive.key) for drive in drives)
             if one is not None and other is not None:
                 matches.append(race_match(drives, (one, other)))
-        for level in programme.tag:
+        for level in programme.tag if (first, second) in pairs else ():
             for pair in ((first, second), (second, first)):
                 job = tag_job(level, *pair)
                 game = judged.get(job.key)
                 if game is not None:
                     matches.append(tag_match(job, game))
+    if not pairs and not jobs:  # the house waits for somebody
+        entrants = [each for each in entrants if not each.is_house]
     return Standings(
         programme.title,
         _rank_entrants(entrants, matches),
@@ -276,8 +277,8 @@ def _rank_entrants(entrants: Sequence[Entry], matches: Sequence[Match]) -> tuple
         key=lambda each: (-round(each[1].points, 6), each[0].name),
     )
     places, above = [], 0
-    for entry, rating, (won, drawn, lost) in rated:
+    for number, (entry, rating, (won, drawn, lost)) in enumerate(rated, 1):
         division = 1 + above // DIVISION_SIZE
         above += not entry.is_house
-        places.append(Place(entry, rating, won, drawn, lost, above, division))
+        places.append(Place(entry, rating, won, drawn, lost, number, division))
     return tuple(places)

@@ -38,12 +38,15 @@ from kit.school.game.league.entries import (
 from kit.school.game.league.house import PROGRAM as HOUSE_PROGRAM
 from kit.school.game.league.house import house_programs
 from kit.school.game.league.league import (
+    HOUSE_RESULTS,
     JudgedJob,
     League,
     LeagueJob,
     drive_job,
+    house_judgements,
     own_league,
     read_programme,
+    run_league_job,
     seconds_left,
     tag_job,
 )
@@ -66,6 +69,7 @@ from kit.school.game.shared_sockets import user_name
 from kit.school.game.starts import OWN_SEED, STARTS
 from kit.school.game.two_players import TAG_SECONDS
 from kit.workspace import open_workspace
+from tests.school.game.league.house_results import house_jobs, house_judgement
 
 LEVEL = find_level("first-drive")
 ARENA = find_level("two-doors")
@@ -342,7 +346,7 @@ def test_what_was_judged_is_kept_for_the_next_look_and_damage_of_it_is_passed_ov
     """Others are judged in processes of their own: this one has a screen to draw."""
     league = League(driven.folder, tmp_path / "judged")
     with monkeypatch.context() as patched:
-        patched.setattr(league_module, "_judge", lambda *told: pytest.fail("judged here"))
+        patched.setattr(league_module, "judge_result", lambda *told: pytest.fail("judged here"))
         assert len(league.unjudged()) == 2
         before = standings_table(read_standings(league))
         assert league.unjudged() == []
@@ -361,7 +365,7 @@ def test_who_runs_a_match_has_judged_it(tmp_path: Path, monkeypatch: pytest.Monk
     job = next(each for each in league.jobs() if each.entrants[0].name == "crashes")
     league.run_job(job.key)
     league_module._judge_once.cache_clear()
-    monkeypatch.setattr(league_module, "_judge", lambda *told: pytest.fail("judged again"))
+    monkeypatch.setattr(league_module, "judge_result", lambda *told: pytest.fail("judged again"))
     assert league.unjudged() == []
     assert league.judge(job) is not None
 
@@ -446,16 +450,18 @@ def test_no_league_or_a_second_one_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_the_first_entrant_meets_the_house_which_takes_no_place(tmp_path: Path) -> None:
+def test_the_first_entrant_meets_the_house_which_wins_no_title(tmp_path: Path) -> None:
     league = make_league(tmp_path, house=True)
     assert (league.waiting(), read_standings(league).places) == ((), ()), "the house waits"
     submit(league.folder, "laser", LASER)
     standings = run(league)
-    assert len(standings.matches) == len(house_programs())
-    assert all("laser" in (entry.name for entry in each.entrants) for each in standings.matches)
+    count = len(house_programs())
+    assert len(standings.matches_of("laser")) == count
+    assert len(standings.matches) == count + count * (count - 1) // 2, "they have met each other too"
     (own,) = standings.own_places
-    assert (own.entry.name, own.number, standings.champion) == ("laser", 1, None)
-    assert {str(row[0]) for row in standings_table(standings).rows} == {""}
+    assert (own.entry.name, standings.champion) == ("laser", None)
+    assert standings.places[own.number - 1] is own
+    assert [str(each[0]) for each in standings_table(standings).rows] == [f"{n} of 4" for n in range(1, 5)]
     order = [each.entry.name.removesuffix(" (house)") for each in standings.places if each.entry.is_house]
     assert order[0] == "quick"
     assert set(order) == set(house_programs())
@@ -465,6 +471,32 @@ def test_the_first_entrant_meets_the_house_which_takes_no_place(tmp_path: Path) 
     assert champion.entry.name == "laser", "whatever the house drives"
     league.change(replace(league.programme(), has_house=False))
     assert len(read_standings(league).matches) == 1
+
+
+def test_what_the_house_drives_comes_with_the_kit_for_a_new_league() -> None:
+    keys = {each.key for each in house_jobs()}
+    assert {each.stem for each in HOUSE_RESULTS.glob("*.npz")} == keys
+    assert house_judgements().keys() == keys
+
+
+@pytest.mark.long
+def test_in_a_new_league_the_house_has_a_table_that_its_recordings_give_again(tmp_path: Path) -> None:
+    league = own_league(open_workspace(tmp_path / "home"))
+    assert not league.waiting()
+    standings = read_standings(league)
+    assert [each.entry.name for each in standings.places] == [
+        f"{n} (house)" for n in ("quick", "steady", "slow")
+    ]
+    assert [each.number for each in standings.places] == [1, 2, 3]
+    assert standings.champion is None
+    assert not standings.waiting
+    told = " ".join(lines_of(summary_blocks(standings)))
+    assert "Nobody is entered" in told
+    for job in house_jobs():
+        assert house_judgement(job) == house_judgements()[job.key]
+        if job.level.id == "parking":
+            driven = run_league_job(job, Level(0))[0]
+            assert list(map(digest_of, driven)) == list(map(digest_of, league.recordings(job)))
 
 
 # Cheats: entries
