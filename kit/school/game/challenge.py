@@ -23,8 +23,8 @@ NO_RUNS: Final = Path(os.devnull) / "runs"
 """A folder without trainings."""
 COMMENT: Final = "#"
 """Begins a line of an answer's file that is not part of the answer."""
-GOLD_GAIN, SILVER_GAIN = 0.98, 0.75
-"""Shares of what the best answer gains on the shortest way that earn gold and silver, where more is better."""
+GAINS: Final = {Medal.BRONZE: 0.25, Medal.SILVER: 0.75, Medal.GOLD: 0.98}
+"""Shares of what the best answer gains on the shortest way that earn medals, where more is better."""
 
 
 class AnswerError(ValueError):
@@ -132,11 +132,7 @@ class ChallengeTask(ABC):
 def judge_return(text: str, answer: float, naive: float, best: float) -> Judgement:
     """Judges a return by its share of what the best one gains on ``naive``, that of the shortest way."""
     others = (("shortest way", naive), ("best answer", best))
-    gains = ((Medal.SILVER, SILVER_GAIN), (Medal.GOLD, GOLD_GAIN))
-    rungs = (
-        (Medal.BRONZE, math.nextafter(naive, math.inf)),
-        *((medal, naive + gain * (best - naive)) for medal, gain in gains),
-    )
+    rungs = tuple((medal, naive + gain * (best - naive)) for medal, gain in GAINS.items())
     comparison = AnswerComparison("return", answer, others, rungs, more_is_better=True)
     return Judgement(comparison.medal, text, comparison)
 

@@ -102,7 +102,7 @@ class PolicyTask(ChallengeTask):
             raise AnswerError(
                 "From S an episode may never end, and each of its steps costs: lead every cell to G."
             )
-        text = f"Return from S {value:.3f}; the shortest way has {naive:.3f}, and {best:.3f} is possible."
+        text = f"Return from S {value:.2f}; the shortest way has {naive:.2f}, and {best:.2f} is possible."
         return judge_return(text, value, naive, best)
 
     @property
@@ -316,7 +316,7 @@ class PolicyBoard(Board):
             if task.grid[cell[0]][cell[1]] == PIT:
                 signs[cell] = (PIT, "bad")
         signs[self._cursor] = (signs[self._cursor][0], "chosen")
-        told = f"  return {value_of(task, self._policy):.3f} from S, at {start[0]},{start[1]}"
+        told = f"  return {value_of(task, self._policy):.2f} from S, at {start[0]},{start[1]}"
         return [
             *grid_rows(task.grid, signs, scale, worth),
             row(),

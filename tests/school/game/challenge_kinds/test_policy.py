@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kit.document.rows import row_text
 from kit.school.game.board import MOVES, find_cell, step
 from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.challenge_kinds.policy import (
@@ -120,3 +121,17 @@ def test_an_episode_that_may_never_end_is_refused_where_nothing_is_discounted() 
     for arrow in "ldr":  # a slip leads into a pit at last
         assert -10 < value_of(task, dict.fromkeys(task.cells, arrow)) < 0
     assert 0 < value_of(task, best_policy(task)) < 1
+
+
+@pytest.mark.parametrize("challenge", POLICIES, ids=lambda each: each.id)
+def test_no_medal_is_given_for_next_to_nothing_and_a_return_is_rounded_alike_everywhere(challenge) -> None:
+    task = challenge.task
+    board = task.board(format_policy(task, naive_policy(task)))
+    comparison = board.judgement().comparison
+    assert comparison is not None
+    (_, naive), (_, best) = comparison.others
+    lowest = comparison.rungs[0][1]
+    assert lowest - naive >= 0.2 * (best - naive)
+    shown = f"{naive:.2f}"
+    assert shown in board.judgement().text
+    assert any(f"return {shown} " in row_text(each) for each in board.rows())
