@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from asyncio import to_thread
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Final
@@ -42,13 +43,15 @@ from kit.tui.rows.shared_game_rows import HOST, RULES, players_card, shared_head
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LETTER_NOTES
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
-from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.workspace import Workspace
 
 GUEST_PLAYER: Final = 1
 NOT_OVER: Final = "The game is not over"
+GIVES_UP: Final = row((f" {NOT_OVER}.", "bold"), " Once more: the key leaves it, and the other player wins.")
+WARNED_S: Final = 5.0
+"""For so long a key that leaves is waited for once more [s]."""
 RULE_WIDTH: Final = 56
 """Columns of the rule on the page of keys."""
 FOOTER: Final = ("drive_keys", "stop_robot", "restart", "help", "back", "quit")
@@ -84,6 +87,8 @@ class SharedScreen(WatchScreen):
         """Why the game is over for this screen; empty while it goes on."""
         self.has_left = False
         """Whether this player has left a game that was not over."""
+        self._has_warned = False
+        """Whether it has just been said that a key leaves a game that is not over."""
         self._phase_of_keys: SharedPhase | None = None
         """For which the keys at the bottom are."""
         self._race_s = 0.0
@@ -134,12 +139,19 @@ class SharedScreen(WatchScreen):
         return (*drives, *again, *(() if self._mode is SharedMode.RACE else ("ghosts",)))
 
     def action_back(self) -> None:
-        """Asks first where a game would be lost by it."""
-        if self.not_over and self.loses_by_leaving:
-            self.stop_driving()
-            self._ask_whether_to_leave()
-        else:
-            super().action_back()
+        """Once says first that a game would be lost by it, which goes on meanwhile, in sight."""
+        loses = bool(self.not_over) and self.loses_by_leaving
+        if loses and not self._has_warned:
+            self._has_warned = True
+            self.set_timer(WARNED_S, self._forget_warning)
+            self._show()
+            return
+        self.has_left = loses
+        super().action_back()
+
+    def _forget_warning(self) -> None:
+        self._has_warned = False
+        self._show()
 
     @property
     def not_over(self) -> str:
@@ -150,13 +162,6 @@ class SharedScreen(WatchScreen):
     def loses_by_leaving(self) -> bool:
         """Whether somebody else's game ends when this player leaves it."""
         return True
-
-    @work(exclusive=True, group="leave")
-    async def _ask_whether_to_leave(self) -> None:
-        choices = [PickerItem("stay", "play on"), PickerItem("leave", "leave", "the other player wins")]
-        if await self.app.push_screen_wait(Picker(NOT_OVER, choices)) == "leave":
-            self.has_left = True
-            super().action_back()
 
     def action_ghosts(self) -> None:
         self._with_ghosts = not self._with_ghosts
@@ -171,7 +176,10 @@ class SharedScreen(WatchScreen):
             return
         rows = shared_heading(self._level.title, self._mode, state, self.player, self.size.width)
         self._rows("heading").show([rows])
-        self._rows("messages").show(shared_message(self._mode, state, self.player, self.join_command))
+        told = shared_message(self._mode, state, self.player, self.join_command)
+        if self._has_warned and self.not_over:
+            told = GIVES_UP, *told[1:]
+        self._rows("messages").show(told)
         if state.phase is not self._phase_of_keys:
             self._phase_of_keys = state.phase
             self._show_keys()
@@ -315,6 +323,11 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         return self._opposing is None
 
     def on_unmount(self) -> None:
+        """A game that nobody has ended is kept as far as it was played: the terminal may have been closed, or the kit quit."""
+        if self._phase is SharedPhase.RUNNING and self._recorder is not None:
+            self._film = self._recorder.recording()
+            with suppress(OSError):  # whoever can still be told is told by ``save_film``
+                self.save_film()
         if self._server is not None:
             self._server.close()
         if self._opponent is not None:

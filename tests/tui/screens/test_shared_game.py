@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.geometry import Pose
+from kit.run.recording import load_recording
 from kit.school.game.ghosts import save_ghost
 from kit.school.game.levels import find_level
 from kit.school.game.race import DriverKind
@@ -17,7 +19,7 @@ from kit.school.game.references import reference_recording
 from kit.school.game.shared_protocol import GameOffer
 from kit.school.game.shared_server import SharedGameClient
 from kit.school.game.shared_sockets import Audience, find_game
-from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase, shared_scenario
+from kit.school.game.two_players import TAG_SECONDS, SharedGameState, SharedMode, SharedPhase, shared_scenario
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen, SharedScreen
 from kit.workspace import Workspace
 from tests.tui.lesson_stage import seen, stage, text, until
@@ -108,7 +110,7 @@ def test_tag_has_no_ghosts(workspace: Workspace) -> None:
 
 
 @pytest.mark.long
-def test_who_leaves_a_game_that_is_not_over_is_asked_and_keys_are_told_when_they_work(
+def test_who_leaves_a_game_that_is_not_over_is_warned_while_it_goes_on_in_sight(
     workspace: Workspace,
 ) -> None:
     client = FakeClient(SharedMode.TAG)
@@ -128,12 +130,15 @@ def test_who_leaves_a_game_that_is_not_over_is_asked_and_keys_are_told_when_they
         await until(pilot, lambda: pilot.app.screen is screen, "the game")
         await pilot.press("escape")
         await seen(pilot, "The game is not over")
-        await pilot.press("enter")
-        await until(pilot, lambda: pilot.app.screen is screen, "the game")
+        assert pilot.app.screen is screen
+        client.say(state(SharedPhase.RUNNING, 5.0))
+        await seen(pilot, f"{TAG_SECONDS - 5.0:.1f} s")
         assert not screen.has_left
+        screen._forget_warning()
+        assert "The game is not over" not in text(pilot)
         await pilot.press("escape")
         await seen(pilot, "The game is not over")
-        await pilot.press("down", "enter")
+        await pilot.press("escape")
         await until(pilot, lambda: screen.has_left, "the end")
 
     stage(lambda theme: SharedGuestScreen(theme, client, workspace), scene)  # type: ignore[arg-type]  # all it uses
@@ -163,3 +168,28 @@ def test_the_hosts_ghosts_wait_for_the_start_and_drive_with_the_race(
 
 def _is_running(screen: SharedScreen) -> bool:
     return screen.state is not None and screen.state.phase is SharedPhase.RUNNING
+
+
+@pytest.mark.long
+def test_a_game_that_the_hosts_terminal_ends_is_kept_as_far_as_it_was_played(
+    workspace: Workspace, tmp_path: Path
+) -> None:
+    folder = tmp_path / "games"
+    with ExitStack() as guests:
+
+        async def scene(pilot: Pilot[None]) -> None:
+            screen = pilot.app.screen
+            assert isinstance(screen, SharedHostScreen)
+            await until(pilot, lambda: screen.view is not None and screen.state, "the world")
+            guests.enter_context(SharedGameClient(find_game(folder, None), "Ben", plays=True))
+            await until(pilot, lambda: _is_running(screen), "the race")
+            await until(pilot, lambda: screen.state is not None and screen.state.seconds > 0.3, "some of it")
+
+        stage(
+            lambda theme: SharedHostScreen(
+                theme, LEVEL, SharedMode.RACE, "Ada", folder, Audience(), workspace
+            ),
+            scene,
+        )
+    file = workspace.recordings / f"{LEVEL.id}.{SharedMode.RACE.value}.npz"
+    assert load_recording(file).ticks > 0
