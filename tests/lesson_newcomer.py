@@ -54,7 +54,7 @@ AIMED_DEG: Final = 5.0
 ON_WAY_M: Final = 0.35
 """Further off a corner than this, the way is left."""
 DRIVES: Final = 20
-"""To the flag, before it is given up."""
+"""To the target, before it is given up."""
 PLAIN_WAY_TO_FLAG: Final = ("0 1 1.571", "0.5 0 2", "0 1 1.571", "0.5 0 3.8", "0 -1 1.571", "0.5 0 4")
 """The same as speed, turning and seconds."""
 TELEOP_KEYS: Final = "/teleopkeys"

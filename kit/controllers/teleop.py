@@ -1,4 +1,4 @@
-"""Teleop: drive with the arrow keys or WASD. Slows down and warns near walls.
+"""Teleop: drive with the arrow keys or WASD. Warns near walls, and slows down towards them.
 
 Listens to the keystroke messages ``p_up``, ``r_up``, ``p_left`` and so on (pressed, released) on
 ``/teleopkeys``. A collision sends the robot back to where it started.
@@ -87,7 +87,7 @@ class Teleop(Node):
         command = Twist()
         command.linear.x = self.strength * self.speed * (("up" in self.held) - ("down" in self.held))
         command.angular.z = self.strength * self.turn_rate * (("left" in self.held) - ("right" in self.held))
-        if self.near:
+        if ("front" if command.linear.x > 0 else "back") in self.near:
             command.linear.x /= 2
         self.drive.publish(command)
 

@@ -62,7 +62,7 @@ from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView
 from kit.workspace import Workspace
 
-REVEAL_INTERVAL: Final = 0.3
+REVEAL_INTERVAL: Final = 0.15
 """Between two rows that appear [s]."""
 BELL_VARIABLE: Final = "KIT_BELL"
 """If set to 1, the terminal's bell rings for a new medal."""
