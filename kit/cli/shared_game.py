@@ -47,7 +47,7 @@ def host(
     kit watch two-doors           a spectator
 
     Your process runs the world. Guests only send their key presses and receive the positions of both robots. The
-    recording of a finished game is saved in your workspace, for `kit replay`.
+    recording of a game is saved in your workspace, for `kit replay`.
     """
     from kit.school.game.levels import UnknownLevel, find_level
     from kit.school.game.two_players import CannotShare, SharedMode, shared_scenario

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
 from kit.document.rows import Row, at_both_edges, row, row_width
@@ -106,6 +107,43 @@ def players_card(mode: SharedMode, state: SharedGameState, me: int | None, width
     one, other = state.poses
     rows.append(row(f"apart {math.dist(one[:2], other[:2]):.2f} m"))
     return [*rows, ruled_title(mode.value, width), *(row((line, "dim")) for line in wrap(RULES[mode], width))]
+
+
+@dataclass(slots=True)
+class RobotMotion:
+    """How one robot moves, by the instants of a game that somebody else's process runs."""
+
+    number: int
+    """The player's."""
+    speed: float = 0.0
+    """Forward [m/s]."""
+    turn_rate: float = 0.0
+    """[rad/s], counter-clockwise."""
+    driven: float = 0.0
+    """Since the game began [m]."""
+    _last: SharedGameState | None = None
+
+    def take(self, state: SharedGameState) -> None:
+        """Takes the next instant; one of another phase begins anew."""
+        last, self._last = self._last, state
+        seconds = 0.0 if last is None else state.seconds - last.seconds
+        if last is None or last.phase is not state.phase or seconds < 0.0:
+            self.speed = self.turn_rate = 0.0
+            self.driven = 0.0 if state.phase is not SharedPhase.OVER else self.driven
+        elif seconds > 0.0:
+            moved = last.poses[self.number].relative(state.poses[self.number])
+            self.speed, self.turn_rate = moved.x / seconds, moved.theta / seconds
+            self.driven += math.hypot(moved.x, moved.y)
+
+    def rows(self, width: int) -> list[Row]:
+        """Its figures, below a title."""
+        figures = (
+            ("forward", f"{self.speed:5.2f} m/s"),
+            ("turning", f"{self.turn_rate:5.2f} rad/s"),
+            ("distance", f"{self.driven:5.1f} m"),
+        )
+        title = ruled_title(f"robot {self.number + 1}", width)
+        return [title, *(row((f"{name:<8} ", "dim"), figure) for name, figure in figures)]
 
 
 def _name_of(state: SharedGameState, number: int, me: int | None) -> str:

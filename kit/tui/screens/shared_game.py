@@ -39,7 +39,14 @@ from kit.school.game.two_players import (
 from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings
-from kit.tui.rows.shared_game_rows import HOST, RULES, players_card, shared_heading, shared_message
+from kit.tui.rows.shared_game_rows import (
+    HOST,
+    RULES,
+    RobotMotion,
+    players_card,
+    shared_heading,
+    shared_message,
+)
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LETTER_NOTES
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
@@ -362,6 +369,7 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
         self._shapes = _Shapes(self._scenario)
         self._announced_state = False
         self.player = GUEST_PLAYER if offer.plays else None
+        self._motion = RobotMotion(HOST if self.player is None else self.player)
 
     def open_world(self) -> None:
         self._client.follow(self._state_arrived, lambda reason: self.post_message(SharedGameEnded(reason)))
@@ -369,6 +377,7 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
     def _state_arrived(self, state: SharedGameState) -> None:
         """Keeps the newest state; called in the client's thread."""
         self.state = state
+        self._motion.take(state)
         if not self._announced_state:
             self._announced_state = True
             self.post_message(SharedStateArrived())
@@ -403,7 +412,10 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
             self.world.offer(self._newest_scene)
             self._show_state()
             panel = self._rows("panel")
-            panel.show(players_card(self._mode, self.state, self.player, panel.content_size.width - 1))
+            width, height = panel.content_size.width - 1, panel.content_size.height
+            card = players_card(self._mode, self.state, self.player, width)
+            figures = self._motion.rows(width) if card else []
+            panel.show([*figures, *card] if len(figures) + len(card) <= height else card)
 
     def _newest_scene(self) -> Scene:
         assert self.state is not None  # nothing is offered before the first state

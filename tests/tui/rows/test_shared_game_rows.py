@@ -9,7 +9,7 @@ import pytest
 from kit.document.rows import row_text
 from kit.geometry import Pose
 from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase
-from kit.tui.rows.shared_game_rows import HOST, players_card, shared_heading, shared_message
+from kit.tui.rows.shared_game_rows import HOST, RobotMotion, players_card, shared_heading, shared_message
 
 OVER = SharedGameState(
     SharedPhase.OVER, 1.0, (Pose(0.0, 0.0), Pose(1.0, 0.0)), (30.0, 60.0), 0, 0, ("Ada", "Ben")
@@ -75,3 +75,17 @@ def test_the_card_of_the_players_has_both_scores_and_who_catches(me: int | None)
 
 def test_a_panel_without_a_size_yet_has_no_card() -> None:
     assert players_card(SharedMode.TAG, OVER, HOST, -1) == []
+
+
+def test_a_guest_is_told_how_its_robot_moves() -> None:
+    motion = RobotMotion(1)
+    for seconds, x, theta in ((0.0, 1.0, 0.0), (0.5, 1.2, 0.1), (1.0, 1.4, 0.2)):
+        poses = Pose(), Pose(x, 0.0, theta)
+        motion.take(SharedGameState(SharedPhase.RUNNING, seconds, poses, (0.0, 0.0), catcher=0))
+    assert motion.speed == pytest.approx(0.4, abs=0.01)
+    assert motion.turn_rate == pytest.approx(0.2)
+    assert motion.driven == pytest.approx(0.4)
+    motion.take(SharedGameState(SharedPhase.OVER, 0.0, (Pose(), Pose()), (0.0, 0.0), catcher=0))
+    assert (motion.speed, motion.driven) == (0.0, pytest.approx(0.4))
+    motion.take(SharedGameState(SharedPhase.COUNTDOWN, 0.0, (Pose(), Pose()), (0.0, 0.0), catcher=0))
+    assert motion.driven == 0.0
