@@ -209,6 +209,11 @@ def daily(context: click.Context, controller: str | None, plain: bool) -> None:
     from kit.school.game.daily import daily_level, has_run, streak, today
 
     level = daily_level(today())
+    if controller is None and not terminal_options.decide(plain=plain).plain.value:
+        context.invoke(
+            play, level=level.id, plain=plain
+        )  # the screen tells it all, and what is true at its end
+        return
     click.echo(f"{level.title}. {level.hint}")
     with _open_journal(context.obj) as (journal, _):
         days = streak(journal.events(), today())
@@ -218,7 +223,7 @@ def daily(context: click.Context, controller: str | None, plain: bool) -> None:
     elif not has_begun:
         click.echo("Finish it today to start a streak.")
     if controller is None:
-        context.invoke(play, level=level.id, plain=plain)
+        context.invoke(play, level=level.id, plain=True)
     else:
         context.invoke(race_, level=level.id, controller=controller, agent=None)
 

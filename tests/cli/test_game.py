@@ -2,7 +2,9 @@
 
 import datetime
 from pathlib import Path
+from types import SimpleNamespace
 
+import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
@@ -55,3 +57,21 @@ def test_a_level_is_played_by_its_name_alone(tmp_path: Path) -> None:
     )
     assert by_name.output.splitlines()[0] == by_command.output.splitlines()[0]
     assert "First drive" in by_name.output
+
+
+def test_the_daily_on_a_screen_tells_nothing_before_it_that_its_end_contradicts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown: list[str] = []
+
+    def show_levels(*arguments: object) -> None:
+        shown.append("levels")
+        raise SystemExit(0)
+
+    monkeypatch.setattr("kit.cli.game.show_levels", show_levels)
+    monkeypatch.setattr(
+        "kit.cli.game.terminal_options.decide",
+        lambda plain=False: SimpleNamespace(plain=SimpleNamespace(value=False)),
+    )
+    assert not result_of(tmp_path, "daily").output
+    assert shown

@@ -179,6 +179,14 @@ def test_help_fits_its_dialog(name: str) -> None:
         assert cell_len(action.keys) < 17
 
 
+def test_a_long_note_goes_on_beside_its_keys() -> None:
+    told = [row_text(each) for each in help_page(next(iter(SCREENS.values())), [("tag", "words " * 20)])]
+    at = next(number for number, line in enumerate(told) if line.startswith(" tag"))
+    column = told[at].index("words")
+    assert len(told) > at + 1
+    assert all(line.index("words") == column and len(line) <= WIDTH - 4 for line in told[at:])
+
+
 @every_case("name", SCREENS)
 @every_case("width", [60, 80, 200])
 def test_the_line_of_keys_fits_and_names_the_way_out(name: str, width: int) -> None:

@@ -24,8 +24,9 @@ class MedalInReach(NamedTuple):
     """The driver's best time so far [s]."""
 
     def describe(self) -> str:
-        """``gold on Left turn by hand, 6.02 s``."""
-        return f"{self.medal.title} on {self.level.title} {self.driver.phrase}, {self.asked:.2f} s"
+        """``gold on Left turn by hand, 0.31 s away``."""
+        away = max(0.01, self.seconds - self.asked)
+        return f"{self.medal.title} on {self.level.title} {self.driver.phrase}, {away:.2f} s away"
 
 
 def medals_in_reach(levels: Sequence[LevelProgress]) -> list[MedalInReach]:

@@ -10,11 +10,14 @@ from textual.binding import Binding, BindingType
 
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
+from kit.plain_text import wrap
 
 FOOTER_ROWS: Final = 2
 """Rows of a line of keys below a text: an empty one sets it apart."""
 KEY_WIDTH: Final = 17
 """Columns of the keys on a help page."""
+TEXT_WIDTH: Final = 52
+"""Columns of what is said beside them."""
 KEPT: Final = frozenset(("help", "back", "quit", "palette"))
 """Actions that a narrow line of keys leaves out last."""
 MORE: Final = "more"
@@ -73,5 +76,9 @@ def help_page(
     rows: list[Row] = []
     for block in (*blocks, *notes):
         if block:
-            rows += [row(), *(row((f" {key:<{KEY_WIDTH}}", "bold"), text) for key, text in block)]
+            rows.append(row())
+        for key, text in block:
+            first, *others = wrap(text, TEXT_WIDTH)
+            rows.append(row((f" {key:<{KEY_WIDTH}}", "bold"), first))
+            rows += [row(" " * (KEY_WIDTH + 1), each) for each in others]
     return tuple(rows)

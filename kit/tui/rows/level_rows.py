@@ -191,12 +191,19 @@ def before_it_goes_on(seconds: float) -> list[Row]:
 
 
 PROGRAM_NOTES: Final = (
-    ("program, agent", "drives on after a bump, without the star; the drive ends when it"),
-    ("", f"is stuck: {STUCK_TIME:.0f} s in touch with something, without moving"),
-    ("starts", f"it drives from {STARTS}: the level's own, then others shifted by up to"),
     (
-        "",
-        f"{100 * SHIFT_M[1]:.0f} cm and turned by up to {math.degrees(SHIFT_RAD[1]):.0f} degrees; the middle result counts",
+        "program, agent",
+        (
+            "drives on after a bump, without the star; the drive ends when it is stuck: "
+            f"{STUCK_TIME:.0f} s in touch with something, without moving"
+        ),
+    ),
+    (
+        "starts",
+        (
+            f"it drives from {STARTS}: the level's own, then others shifted by up to {100 * SHIFT_M[1]:.0f} cm and turned by up to "
+            f"{math.degrees(SHIFT_RAD[1]):.0f} degrees; the middle result counts"
+        ),
     ),
 )
 """What is said of drives by programs and agents where keys are explained."""

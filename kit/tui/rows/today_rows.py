@@ -40,7 +40,7 @@ def today_rows(
         maze += f", {counted(overview.streak, 'day')} in a row"
     lines = [("4", "maze", maze)]
     if overview.next_medal:
-        lines.append(("4", "medal", overview.next_medal))
+        lines.append(("4", "next", overview.next_medal))
     if overview.due:
         lines.append(("7", "quiz", f"{counted(overview.due, 'question')} due"))
     lines += [("5", "train", f"{name} is running") for name in overview.running[:MOST_TRAININGS]]

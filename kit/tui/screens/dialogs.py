@@ -31,9 +31,13 @@ SCROLL_ROWS: Final = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 
 MOUSE_NOTES: Final = {
     True: (
-        ("mouse", "clicks press keys and choose; on a floor they drive"),
-        ("", "there; the wheel zooms and chooses; most terminals"),
-        ("", "select text with Shift"),
+        (
+            "mouse",
+            (
+                "clicks press keys and choose; on a floor they drive there; the wheel zooms and chooses. "
+                "Most terminals select text with Shift"
+            ),
+        ),
         ("Ctrl-P Mouse", "leaves it to the terminal"),
     ),
     False: (

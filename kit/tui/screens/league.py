@@ -35,7 +35,7 @@ from kit.school.game.league.league_blocks import (
     summary_blocks,
 )
 from kit.school.game.league.standings import Match, Standings, match_film, read_standings
-from kit.school.game.two_players import STILL_SECONDS
+from kit.school.game.two_players import TAG_RULE
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_rows import clock
 from kit.tui.screens.agents import agent_items
@@ -436,8 +436,12 @@ class LeagueScreen(RowsScreen[None]):
 NOTES: Final = (
     ("rating", "400 points more: wins ten times as often (Bradley-Terry)"),
     ("95 %", "where the rating lies, as far as these matches tell"),
-    ("race", "each drives alone from five starts; the middle drives compare"),
-    ("", f"a drive ends after {RACE_LIMIT:.0f} times the reference's time"),
-    ("tag", "two robots in one world; a second counts against the catcher"),
-    ("", f"or the other one where that alone stands still for {STILL_SECONDS:.0f} s"),
+    (
+        "race",
+        (
+            f"each drives alone from five starts; the middle drives are compared. A drive ends after {RACE_LIMIT:.0f} times the "
+            "reference's time"
+        ),
+    ),
+    ("tag", f"two robots in one world. {TAG_RULE}"),
 )

@@ -76,10 +76,17 @@ CARD_PARTS: Final = ("stars", "rivals", "sectors")
 """Of the card, below the rungs of each driver: the rest is said below the list."""
 NOTES: Final = (
     ("B S G M R", "bronze, silver, gold, master, record: each driver has a ladder"),
-    ("*", "a star for an extra rule that a drive has kept:"),
-    ("", "no bump, no stop, one sensor, few lines, few training steps"),
-    ("belt", "of a world: white for a first medal, yellow for one on each level;"),
-    ("", "green, blue: silver on half, on all; brown, black: gold likewise"),
+    (
+        "*",
+        "a star for an extra rule that a drive has kept: no bump, no stop, one sensor, few lines, few training steps",
+    ),
+    (
+        "belt",
+        (
+            "of a world: white for a first medal, yellow for one on each level; green, blue: silver on half, on all; brown, black: "
+            "gold likewise"
+        ),
+    ),
     ("bump", "by hand back to the start, with all targets to be reached again"),
     *level_rows.PROGRAM_NOTES,
     ("side by side", "a pair that is apart for longer gets bronze at best"),

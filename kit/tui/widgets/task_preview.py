@@ -98,7 +98,7 @@ def _task_told(runs: Path, config: RunConfig) -> tuple[Scene, Sequence[Block]]:
     about = [
         ("task", task.summary or task.name),
         ("map", f"{shown}; S is a start"),
-        ("goal", task.goal.description),
+        ("success", task.goal.description),
         ("time", time_told(expected_time(runs, config))),
     ]
     earns = (
