@@ -157,6 +157,20 @@ def suggestion(name: str, names: Collection[str]) -> str:
     return "known: " + ", ".join(known[:MAX_KNOWN_NAMES]) + (", ..." if len(known) > MAX_KNOWN_NAMES else "")
 
 
+def unknown_name(kind: str, name: str, names: Collection[str], lister: str = "") -> str:
+    """Returns the error message about a ``name`` that nothing of a ``kind`` has: the nearest of ``names``, or else the command
+    that lists them all, or a list of them.
+
+    >>> unknown_name("level", "first-driv", ("first-drive", "slalom"))
+    'There is no level "first-driv": did you mean "first-drive"?'
+    >>> unknown_name("level", "x", ("first-drive", "slalom"), "kit game")
+    'There is no level "x". `kit game` lists them.'
+    """
+    if lister and nearest_name(name, names) is None:
+        return f"There is no {kind} {quoted(name)}. `{lister}` lists them."
+    return f"There is no {kind} {quoted(name)}: {suggestion(name, names)}"
+
+
 def join_names(names: Sequence[str], at_most: int = 4) -> str:
     """Returns the names separated by commas; of more than ``at_most`` the first ones and how many are left out."""
     if len(names) <= at_most:

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from kit.cli import messages, report_output
-from kit.plain_text import escape_controls, suggestion
+from kit.plain_text import escape_controls, unknown_name
 from kit.school.form_reading import read_form
 from kit.school.lessons.reading import UnknownLesson, find_lesson
 from kit.school.lessons.teachers_guide import teachers_guide
@@ -66,7 +66,7 @@ def report(
     wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())
     for each in wanted:
         if each not in CHAPTER_IDS:
-            messages.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTER_IDS)}")
+            messages.fail(unknown_name("chapter", each, CHAPTER_IDS))
     with report_output.explained_errors():
         roster = read_roster(files, use_names=names)
         if not roster.students:

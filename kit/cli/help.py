@@ -17,7 +17,7 @@ from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row_text
 from kit.help.site import overview, write_pages
 from kit.help.topic import find_topic, topic_names
-from kit.plain_text import counted, quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion, unknown_name
 
 _STYLES: Final[Mapping[str, Mapping[str, bool]]] = {
     Tone.CODE: {"bold": True},
@@ -85,7 +85,7 @@ def _print_command_help(context: click.Context, name: str) -> None:
     found = main.get_command(context, name)
     if found is None:
         known = (*topic_names(), *main.list_commands(context))
-        messages.fail(f"There is no topic {quoted(name)}: {suggestion(name, known)}")
+        messages.fail(unknown_name("topic", name, known, "kit help"))
     click.echo(found.get_help(found.context_class(found, info_name=name, parent=context.find_root())))
 
 

@@ -44,7 +44,7 @@ from kit.layers.planning import LayerPlan
 from kit.layers.relaxations import Relaxation, allow_unwanted, drop_requirements
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import requirements_text
-from kit.plain_text import counted, quoted, suggestion
+from kit.plain_text import counted, unknown_name
 from kit.world.problems import WorldError
 from kit.world.records import MAX_LAYERS
 
@@ -337,7 +337,7 @@ def example(name: str | None, on_screen: bool) -> None:
     elif name in EXAMPLES:
         click.echo(requirements_text(EXAMPLES[name]), nl=False)
     else:
-        messages.fail(f"There is no example {quoted(name)}: {suggestion(name, EXAMPLES)}")
+        messages.fail(unknown_name("example", name, EXAMPLES))
 
 
 # What the user named

@@ -88,7 +88,7 @@ def _find_world(world: str) -> tuple[Path, Path | None]:
     try:
         card = find_map(world)
     except UnknownMap as error:
-        raise click.UsageError(f"There is no file {world}, and {error}") from None
+        raise click.UsageError(str(error)) from None
     return card.world_file, card.root
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from kit.extensions import folders
 from kit.plain_files import near_file
-from kit.plain_text import nearest_name
+from kit.plain_text import unknown_name
 from kit.workspace import Workspace, expand_home, open_workspace, unusable_workspace_error, write_atomically
 
 FOLDER = Path(__file__).parent
@@ -75,9 +75,7 @@ def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
         return known[name]
     if path.exists():
         raise LookupError(f"{name}: a controller is a Python file, NAME.py; this is {_kind_of(path)}.")
-    near = nearest_name(name, known)
-    hint = f" Did you mean {near}?" if near else ""
-    raise LookupError(f"There is no controller named {name}.{hint} Available: {', '.join(known)}.")
+    raise LookupError(unknown_name("controller", name, known))
 
 
 def _kind_of(path: Path) -> str:

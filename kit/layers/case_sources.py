@@ -14,7 +14,7 @@ from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.planning import DEFAULT_TIME_LIMIT, LayerPlan, solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import RequirementsFile, is_world_file, read_requirements, requirements_text
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import quoted, unknown_name
 from kit.world.catalogue import WORLD_FILE, allowed_root_of, find_map, map_names, own_map_folder
 from kit.world.records import World
 
@@ -117,5 +117,6 @@ def _find_file(target: str) -> tuple[Path | None, Path | None]:
     if own is not None:
         return own / WORLD_FILE, allowed_root_of(own / WORLD_FILE)
     known = () if "/" in target or path.suffix else (*EXAMPLES, *maps)
-    hint = f": {suggestion(target, known)}" if known else ""
-    raise UnknownPlanningTask(f"there is no file {quoted(target)}{hint}")
+    if known:
+        raise UnknownPlanningTask(unknown_name("file, map or example", target, known))
+    raise UnknownPlanningTask(f"There is no file {quoted(target)}.")

@@ -19,7 +19,7 @@ from kit.document.blocks import (
     Text,
 )
 from kit.document.markdown import document_to_markdown
-from kit.plain_text import suggestion
+from kit.plain_text import unknown_name
 from kit.study.author_agents import author_agents_table
 from kit.study.evaluation import evaluation_chapters, evaluation_plots, evaluation_table
 from kit.study.evaluation_data import EvaluationData, read_evaluation_data
@@ -118,7 +118,7 @@ def chapters(
     allowed = {"table": numbers, "figure": set(pictures)}.get(kind, numbers | set(pictures))
     if wanted not in allowed:
         what = kind or "table or figure"
-        raise UnknownStudyNumber(f"There is no {what} {wanted!r}: {suggestion(wanted, sorted(allowed))}")
+        raise UnknownStudyNumber(unknown_name(what, wanted, sorted(allowed), "kit study"))
     is_table = wanted in numbers and kind != "figure"
     return (), (
         _table_chapter(wanted, workspace) if is_table else _figure_chapter(pictures[wanted], workspace),

@@ -11,7 +11,7 @@ from pathlib import Path
 from kit.extensions import folders
 from kit.geometry import Pose
 from kit.plain_files import is_file_there
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import quoted, unknown_name
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.documents import open_document
 from kit.world.yaml_section import Section
@@ -163,7 +163,7 @@ def find_map(name: str, folder: Path | None = None) -> MapCard:
     if own is not None and (card := own_card(own / WORLD_FILE)) is not None:
         return card
     if name not in names:
-        raise UnknownMap(f"there is no map {quoted(name)}: {suggestion(name, names)}")
+        raise UnknownMap(unknown_name("map", name, names, "kit maps"))
     return _read_card(_map_folder(name, folder))
 
 

@@ -75,7 +75,7 @@ def test_for_machines() -> None:
         (("show", "pair_tern", "--plain"), 'did you mean "pair_turn'),
         (("show", "pair_turn", "--case", "up", "--plain"), "has no case up"),
         (("show", "depot", "--plain"), "no DiffDrive"),
-        (("test", "pair_turn", "--controller", "abreats"), "Did you mean abreast"),
+        (("test", "pair_turn", "--controller", "abreats"), 'did you mean "abreast'),
     ],
 )
 def test_mistakes_end_with_one_message(words: tuple[str, ...], message: str) -> None:

@@ -80,7 +80,7 @@ MISTAKES = {
     "a table alone": (("train", "smooth-turn", "--algo", "dqn"), "sac"),
     "nobody to imitate": (("train", "smooth-turn", "--algo", "bc"), "--imitate fields"),
     "imitated by a reward": (("train", "turn", "--algo", "ppo", "--imitate", "fields"), "bc or dagger"),
-    "an unknown controller": (("train", "smooth-turn", "--imitate", "feilds"), "Did you mean fields"),
+    "an unknown controller": (("train", "smooth-turn", "--imitate", "feilds"), 'did you mean "fields'),
     "unknown reward": (("train", "turn", "--algorithm-reward", "mine"), "algorithm-1"),
     "bad name": (("train", "turn", *QUICK, "--name", "../x"), "letters"),
     "no such run": (("watch", "nothing"), "kit train turn"),

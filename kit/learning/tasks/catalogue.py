@@ -14,7 +14,7 @@ from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.own_files import workspace_task_file
 from kit.learning.tasks.task_reader import TASK_FILE, read_task
 from kit.plain_files import is_file_there
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import quoted, unknown_name
 from kit.workspace import expand_home
 
 
@@ -54,13 +54,13 @@ def find_task_file(name: str) -> Path | None:
     if is_file_there(path):
         return path
     if path.suffix in (".yaml", ".yml") or len(path.parts) > 1:
-        raise UnknownTask(f"there is no file {quoted(name, 200)}")
+        raise UnknownTask(f"There is no file {quoted(name, 200)}.")
     if own := workspace_task_file(name):
         return own
     for _, folder in folders("tasks"):
         if is_file_there(folder / f"{name}.yaml"):
             return folder / f"{name}.yaml"
-    raise UnknownTask(f"there is no task {quoted(name)}: {suggestion(name, names)}")
+    raise UnknownTask(unknown_name("task", name, names, "kit train --list"))
 
 
 @cache

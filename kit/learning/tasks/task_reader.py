@@ -172,7 +172,7 @@ class _TaskReader:
                 if not is_file_there(file):
                     section.error(f"the map {name} has no file {quoted(world_file)}", "world_file")
             except UnknownMap as error:
-                section.error(f"{error}; for a file of your own write world: FILE", "maps")
+                section.error(f"{error} For a file of your own write world: FILE", "maps")
             except UnusableFile as error:
                 section.error(str(error), "world_file")
         return names, tuple(cards)

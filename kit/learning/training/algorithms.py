@@ -13,7 +13,7 @@ from inspect import signature
 from types import MappingProxyType
 from typing import Any, Literal
 
-from kit.plain_text import nearest_name, quoted
+from kit.plain_text import unknown_name
 
 AlgorithmFamily = Literal["rollouts", "replay", "search", "table", "imitation"]
 """The kind of learning: from what its present policy just did; from a replay buffer; by trying changed networks
@@ -228,9 +228,7 @@ def find_algorithm(name: str) -> Algorithm:
     """Returns the algorithm of that name. Raises UnknownAlgorithm."""
     known = {**ALGORITHMS, **IMITATION_ALGORITHMS}
     if name not in known:
-        near = nearest_name(name, known)
-        meant = "." if near is None else f": did you mean {quoted(near)}?"
-        raise UnknownAlgorithm(f"there is no algorithm {quoted(name)}{meant} Available: {', '.join(known)}.")
+        raise UnknownAlgorithm(unknown_name("algorithm", name, known, "kit train --list"))
     return known[name]
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.runs import TrainingRun
 from kit.plain_files import foreign_part
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import quoted, unknown_name
 from kit.workspace import draft_folder, write_atomically
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
@@ -112,4 +112,4 @@ def find_run(folder: Path, name: str | None = None) -> TrainingRun:
         return runs[name]
     if not runs:
         raise RunError(f"There is no run {quoted(name)}, nor any other. `kit train turn` starts one.")
-    raise RunError(f"There is no run {quoted(name)}: {suggestion(name, runs)}")
+    raise RunError(unknown_name("run", name, runs, "kit runs"))

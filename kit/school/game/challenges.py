@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import unknown_name
 from kit.school.game.challenge import Challenge
 from kit.school.game.challenge_kinds import challenge_kinds
 from kit.school.game.judgement import Judgement
@@ -56,7 +56,7 @@ def find_challenge(name: str) -> Challenge:
     """Finds a challenge by its id. Raises LookupError that offers the nearest one."""
     known = {each.id: each for each in all_challenges()}
     if name not in known:
-        raise LookupError(f"There is no challenge {quoted(name)}: {suggestion(name, tuple(known))}")
+        raise LookupError(unknown_name("puzzle", name, tuple(known), "kit game puzzle"))
     return known[name]
 
 

@@ -12,7 +12,7 @@ from kit.learning.tasks.disturbances import TURN_SHARE
 from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.goals.registry import read_goal
 from kit.learning.tasks.goals.target import REACH_TARGET
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import quoted, suggestion, unknown_name
 from kit.run.scenario import Scenario, find_scenario
 from kit.school.game.drive_commands import ReferenceDrive
 from kit.school.lessons.reading import lesson_number, lessons_folder
@@ -239,9 +239,7 @@ def find_level(name: str) -> GameLevel:
         if name in (level.id, str(number)):
             return level
     ids = [level.id for level in levels]
-    raise UnknownLevel(
-        f"There is no level {quoted(name)} among those that `kit game` lists: {suggestion(name, ids)}"
-    )
+    raise UnknownLevel(unknown_name("level", name, ids, "kit game"))
 
 
 @cache

@@ -13,7 +13,7 @@ from kit.dialogue.dialogue import DialogueAction, Refused
 from kit.dialogue.effects import Effect, Tell
 from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Picture, Text, Tone
-from kit.plain_text import nearest_name, quoted
+from kit.plain_text import quoted, unknown_name
 from kit.school.lessons.reading import lesson_number, lessons_folder
 from kit.world.documents import open_document
 from kit.world.yaml_section import Section
@@ -77,9 +77,8 @@ def find_terms(terms: Sequence[GlossaryTerm], word: str) -> tuple[GlossaryTerm, 
         or [each for each in terms if begins.search(each.meaning)]
     )
     if not found:
-        near = nearest_name(word, [spelling for each in terms for spelling in each.spellings])
-        hint = f"did you mean {quoted(near)}?" if near else "`kit glossary` lists its terms."
-        raise UnknownTerm(f"The glossary has no {quoted(word)}: {hint}")
+        spellings = [spelling for each in terms for spelling in each.spellings]
+        raise UnknownTerm(unknown_name("term", word, spellings, "kit glossary"))
     return tuple(found)
 
 

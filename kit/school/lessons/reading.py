@@ -16,7 +16,7 @@ from kit.learning.grid.grid_learner import GridLearnerSettings
 from kit.learning.grid.grid_world import GridMapError, GridRewards, GridWorld
 from kit.learning.grid.registry import GRID_LEARNERS
 from kit.plain_files import is_file_there
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import nearest_name, quoted, suggestion
 from kit.results.grading_result import Visibility
 from kit.school.lessons.markdown import markdown_to_markup
 from kit.school.lessons.own_learners import OWN_LEARNERS
@@ -109,9 +109,26 @@ def find_lesson(name: str, folder: Path | None = None) -> Lesson:
     known = find_lesson_name(name, names, folder)
     if known is not None:
         return read_lesson(folder / known)
-    raise UnknownLesson(
-        f"There is no lesson {quoted(name)} among those that `kit lesson` lists: {suggestion(name, names)}"
-    )
+    raise UnknownLesson(unknown_lesson(name, names, folder))
+
+
+def unknown_lesson(name: str, names: Sequence[str], folder: Path | None = None) -> str:
+    """The error message about a lesson that is none of ``names``: the nearest one by its number in the course.
+
+    >>> unknown_lesson("driv", ("00-what-this-is-about", "01-drive"))
+    'There is no lesson "driv": did you mean A2, "Drive"? `kit lesson` lists them.'
+    """
+    spellings = {
+        spelling: known
+        for known in names
+        for spelling in (known.partition("-")[2], lesson_title(known, folder), known)
+    }
+    near = nearest_name(name, spellings)
+    hint = "."
+    if near is not None:
+        known = spellings[near]
+        hint = f": did you mean {lesson_number(known, folder)}, {quoted(lesson_title(known, folder))}?"
+    return f"There is no lesson {quoted(name)}{hint} `kit lesson` lists them."
 
 
 def find_lesson_name(name: str, names: Sequence[str], folder: Path | None = None) -> str | None:

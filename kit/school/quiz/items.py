@@ -17,6 +17,7 @@ from kit.school.lessons.reading import (
     lesson_number,
     lesson_title,
     lessons_folder,
+    unknown_lesson,
     with_lesson_numbers,
 )
 from kit.school.lessons.translation import translation_of
@@ -136,9 +137,7 @@ class QuestionBank:
         found = find_lesson_name(name, self.lessons)
         if found is not None:
             return found
-        raise LessonWithoutQuestions(
-            f"no lesson {quoted(name)} has questions: {suggestion(name, self.lessons)}"
-        )
+        raise LessonWithoutQuestions(unknown_lesson(name, self.lessons))
 
 
 def lesson_reference(lesson: str) -> str:

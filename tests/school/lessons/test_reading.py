@@ -61,7 +61,7 @@ def test_a_text_names_a_lesson_by_its_number_in_the_course(tmp_path: Path) -> No
 
 def test_an_unknown_lesson_has_a_nearest_one(tmp_path: Path) -> None:
     write_lesson(tmp_path)
-    with pytest.raises(UnknownLesson, match="01-colours"):
+    with pytest.raises(UnknownLesson, match='did you mean 1, "Colours"'):
         find_lesson("colors", tmp_path)
 
 

@@ -22,7 +22,7 @@ from typing import Final
 from kit.controllers import ControllerFile, controller_title, kit_controllers
 from kit.learning.policies.policy_node_text import TITLE, learned_constants
 from kit.plain_files import open_plain_file
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import quoted, unknown_name
 from kit.school.game.league.house import PROGRAM as HOUSE_PROGRAM
 from kit.school.game.league.house import house_programs
 from kit.school.game.player_progress import CODE_ERRORS, bare_code
@@ -252,7 +252,7 @@ def find_entry(entries: Sequence[Entry], name: str) -> Entry:
         if each.name == name:
             return each
     names = [each.name for each in entries]
-    raise LeagueError(f"There is no entry {quoted(name)}: {suggestion(name, names)}")
+    raise LeagueError(unknown_name("entry", name, names, "kit league"))
 
 
 def program_of_agent(name: str, runs: Path) -> bytes:
