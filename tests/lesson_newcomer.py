@@ -378,7 +378,7 @@ class ScreenNewcomer(Newcomer):
                 if each.kind is CommandKind.BESIDE
                 and each in self._commands
                 and command.kind is CommandKind.SCREEN
-                and command.line == f"kit play {each.map_name}"
+                and command.line == f"kit drive {each.map_name}"
             ]
             if not asked and command not in self._commands:
                 continue

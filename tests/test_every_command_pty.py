@@ -135,7 +135,7 @@ def _needs_world(line: str) -> bool:
 def _kind_of(line: str) -> CommandKind:
     """A hint and a quiz do not say it."""
     words = line.split()
-    is_screen = words[1] == "play" or words[1:3] == ["fields", "show"]
+    is_screen = words[1] == "drive" or words[1:3] == ["fields", "show"]
     return CommandKind.SCREEN if is_screen else CommandKind.ALONE
 
 
@@ -185,10 +185,10 @@ def _ask_all(home: Home, lesson: Lesson, step: LessonStep, questions: list[Shown
     opened = [
         each.lines
         for each in shown_commands(step, file)
-        if each.command.kind is CommandKind.SCREEN and each.command.line.startswith("kit play ")
+        if each.command.kind is CommandKind.SCREEN and each.command.line.startswith("kit drive ")
     ]
     if not opened:
-        opened = [fill_in_paths(f"kit play {place}", file)]
+        opened = [fill_in_paths(f"kit drive {place}", file)]
     with home.open_world(opened[0]) as world:
         for each in questions:
             keys = UP if "/teleopkeys" in shlex.split(each.lines.replace("\\\n", "")) else b""

@@ -34,8 +34,8 @@ def test_a_share_reads_as_all_none_or_what_it_is_compared_with_only_where_it_is(
 
 
 def test_a_command_is_whole_where_it_fits_a_line() -> None:
-    text = "Then `kit run maze --seed 4`, or (`kit play`). It's ` alone"
-    assert wrap(text, 26) == ["Then", "`kit run maze --seed 4`,", "or (`kit play`). It's `", "alone"]
+    text = "Then `kit run maze --seed 4`, or (`kit drive`). It's ` alone"
+    assert wrap(text, 26) == ["Then", "`kit run maze --seed 4`,", "or (`kit drive`). It's `", "alone"]
     assert wrap("a `kit run maze --seed 4` b", 12) == ["a `kit run", "maze --seed", "4` b"]
 
 

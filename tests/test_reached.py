@@ -20,7 +20,7 @@ def test_a_module_reaches_its_importers_and_theirs() -> None:
     ("changed", "test"),
     [
         ("kit/sim/physics.py", "tests/sim/test_physics"),
-        ("kit/cli/play.py", "tests/cli/test_play_pty"),
+        ("kit/cli/drive.py", "tests/cli/test_drive_pty"),
         ("grader/scoring.py", "tests/grader/test_scoring"),
         ("kit/layers/__init__.py", "tests/layers/test_layers"),
     ],

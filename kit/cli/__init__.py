@@ -13,8 +13,7 @@ from kit.cli.process import run_as_process
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
     "start": ("kit.cli.start", "Open the kit: a robot and a menu (same as `kit` alone)."),
-    "play": ("kit.cli.play", "Open a map: watch the robot, drive it, edit its controller."),
-    "drive": ("kit.cli.play", "Same as `play`: `kit drive pair_turn --controller fields`."),
+    "drive": ("kit.cli.drive", "Open a map: watch the robot, drive it, edit its controller."),
     "lesson": ("kit.cli.lesson", "List the lessons, or take one."),
     "game": (
         "kit.cli.game",

@@ -179,7 +179,9 @@ def _write_node(policy: Policy, file: Path) -> None:
     write_atomically(file, format_policy_node(policy).encode())
     task = policy.trained_on.resolve()
     where = task.maps[0] if task.maps else task.map_cards[0].world_file
-    messages.say(f"{file}: `kit play {where} --controller {file}` runs it here, `python3 {file}` on a robot.")
+    messages.say(
+        f"{file}: `kit drive {where} --controller {file}` runs it here, `python3 {file}` on a robot."
+    )
 
 
 def _make_package(policy: Policy, name: str, destination: Path | None, workspace: Path | None) -> None:

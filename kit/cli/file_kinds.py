@@ -125,7 +125,7 @@ FILE_KINDS: Final = (
         "a world",
         lambda look: "properties" in look.keys and bool(look.keys & {"layers", "models"}),
         ("kit world check {}", "kit run {}"),
-        ("kit play", "kit drive", "kit fields", "kit layers", "kit launch", "kit task", "grader check"),
+        ("kit drive", "kit fields", "kit layers", "kit launch", "kit task", "grader check"),
     ),
     FileKind(
         "a model, which a world names under `models`: `kit world check WORLD.yaml` checks it with its world",
@@ -182,7 +182,7 @@ FILE_KINDS: Final = (
     FileKind(
         "a program",
         lambda look: look.path.suffix == ".py",
-        ("kit run MAP --controller {}", "kit play MAP --controller {}"),
+        ("kit run MAP --controller {}", "kit drive MAP --controller {}"),
         (
             "kit drive",
             "kit launch",
@@ -206,7 +206,7 @@ FILE_KINDS: Final = (
         "a policy",
         lambda look: "about.npy" in look.parts or ("values.npy" in look.parts and "edges.npy" in look.parts),
         ("kit evaluate {}",),
-        ("kit compare", "kit game", "kit league", "kit run", "kit play", "grader check"),
+        ("kit compare", "kit game", "kit league", "kit run", "kit drive", "grader check"),
     ),
     FileKind("a bag", _is_bag, ("kit ros bag info {}", "kit ros bag play {}"), ("kit ros", "grader check")),
     FileKind(

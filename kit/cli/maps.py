@@ -71,7 +71,7 @@ def command(ctx: click.Context) -> None:
     kit maps new hall --pair                with two robots that drive as one
     kit maps from-photo plan.jpg --width 5  read a photograph of a drawing
 
-    Your own maps are folders under worlds/ in your workspace. `kit play`, `kit run` and `kit train` take the folder.
+    Your own maps are folders under worlds/ in your workspace. `kit drive`, `kit run` and `kit train` take the folder.
     """
     if ctx.invoked_subcommand is None:
         _list()
@@ -84,7 +84,7 @@ def _list() -> None:
         maps_table(all_maps()),
         *listed,
         Text(
-            "`kit maps NAME` shows one, `kit play NAME` opens it, `kit maps --help` says how to make your own."
+            "`kit maps NAME` shows one, `kit drive NAME` opens it, `kit maps --help` says how to make your own."
         ),
     ]
     click.echo("\n".join(lines_of(blocks)))
@@ -480,5 +480,5 @@ def _report(made: NewMap, scale: str, glyphs: str | None, doubtful: tuple[SceneP
     is_found = name not in map_names() and own_map_folder(name) == made.folder
     shown = name if is_found else made.folder
     click.echo(
-        f"Written to {made.folder}\nDrive on it: kit play {shown}\nTrain an agent on it: kit task new mine --from {shown}"
+        f"Written to {made.folder}\nDrive on it: kit drive {shown}\nTrain an agent on it: kit task new mine --from {shown}"
     )

@@ -89,7 +89,7 @@ def command(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Replay a run recorded by `kit run --record FILE`; pause, step and speed work as in `kit play`.
+    """Replay a run recorded by `kit run --record FILE`; pause, step and speed work as in `kit drive`.
     A drive from the game is shown under its level's conditions.
 
     \b

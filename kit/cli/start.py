@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 SUGGESTED_COMMANDS: Final = (
     ("kit lesson", "lessons: predict, run, explain, modify, make"),
-    ("kit play", "drive: any map, any controller"),
+    ("kit drive", "drive: any map, any controller"),
     ("kit game", "levels, stars, ghosts, races"),
     ("kit league", "your programs and agents against others"),
     ("kit train turn", "train an agent to drive"),

@@ -294,7 +294,7 @@ def command(
     states that the learner visits, and so needs more than a recording.
 
     \b
-    kit play turn --controller teleop --record drive.npz
+    kit drive turn --controller teleop --record drive.npz
     kit train smooth-turn --imitate drive.npz
     kit train smooth-turn --imitate fields
 

@@ -235,7 +235,7 @@ def find_world(folder: Path, name: str | None = None) -> RunningWorld:
     worlds = running_worlds(folder)
     if not worlds:
         raise WorldNotFound(
-            "No world is running in this workspace. Start one in another terminal: kit play maze, "
+            "No world is running in this workspace. Start one in another terminal: kit drive maze, "
             "kit launch FOLDER, or kit run maze --serve."
         )
     for world in worlds:

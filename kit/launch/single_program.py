@@ -82,7 +82,7 @@ class SingleProgram:
     def _started(self, graph: Graph, on_loaded: Callable[[], object] | None = None) -> Process:
         if is_builtin(self._request) and self._request.package != "tf2_ros":
             raise ProcessStartError(
-                f"{self._request.executable} cannot be started by itself here: `kit play` and `kit launch` start "
+                f"{self._request.executable} cannot be started by itself here: `kit drive` and `kit launch` start "
                 "the world and its view"
             )
         context = StartContext(

@@ -75,7 +75,7 @@ def _measure_drives(folder: Path) -> tuple[float, float]:
 
 
 def _drive(workspace: Path) -> AbstractContextManager[tuple[subprocess.Popen[bytes], int]]:
-    return in_terminal(python_command("kit", "play", "maze", "--workspace", str(workspace)))
+    return in_terminal(python_command("kit", "drive", "maze", "--workspace", str(workspace)))
 
 
 @contextmanager
@@ -109,7 +109,7 @@ def wait_for_picture(written: dict[int, int], processes: Sequence[subprocess.Pop
     deadline = time.monotonic() + START_LIMIT_S
     while min(written.values()) < FIRST_PICTURE:
         if time.monotonic() > deadline or any(each.poll() is not None for each in processes):
-            raise NotMeasured("`kit play maze` does not start here: try it")
+            raise NotMeasured("`kit drive maze` does not start here: try it")
         _measure_reading(written, KEY_INTERVAL_S)
 
 

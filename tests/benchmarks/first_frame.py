@@ -60,7 +60,7 @@ def main() -> None:
     bare = baseline()
     print(f"bare `import textual.app`           {bare:.2f} s")
     names = ("frame", "robot in its maze", "left after Ctrl-C")
-    for words in ((), ("play",)):
+    for words in ((), ("drive",)):
         figures = zip(*(one_start(*words) for _ in range(STARTS)), strict=True)
         for name, times in zip(names, figures, strict=True):
             middle = statistics.median(times)

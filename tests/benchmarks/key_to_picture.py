@@ -56,7 +56,7 @@ def reactions(user: User) -> list[float]:
 
 def measured(server: tuple[int, Path], folder: Path, size: tuple[int, int], colour: str) -> list[float]:
     """The reactions of a kit with these colours on a screen of this size."""
-    program = ("play", "simple", "--controller", "teleop")
+    program = ("drive", "simple", "--controller", "teleop")
     user = open_kit(server, folder, RATE, DELAY, *program, variables=[f"KIT_COLOR={colour}"])
     try:
         user.until(lambda: "exact" in user.text, "the terminal's answer", limit=60)

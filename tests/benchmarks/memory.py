@@ -1,6 +1,6 @@
-"""What the memory of a student's `kit play` consists of: by package that is imported, and what a running drive adds.
+"""What the memory of a student's `kit drive` consists of: by package that is imported, and what a running drive adds.
 
-`python tests/benchmarks/memory.py` opens `kit play maze` in a terminal and presses keys; every import is measured as it
+`python tests/benchmarks/memory.py` opens `kit drive maze` in a terminal and presses keys; every import is measured as it
 happens. A package's figure is what its own modules add to the process's resident memory, without what they import in turn.
 """
 
@@ -91,7 +91,7 @@ def _told(process: subprocess.Popen[bytes], written: dict[int, int], output: Pat
 
 
 def main() -> None:
-    found = measure("play", *(sys.argv[1:] or ["maze"]))
+    found = measure("drive", *(sys.argv[1:] or ["maze"]))
     added = sorted(found["added"].items(), key=lambda each: -each[1])
     rows = [("Python itself", found["begin"]), *added[:SHOWN]]
     rows.append((f"{len(added) - SHOWN} other packages", sum(size for _, size in added[SHOWN:])))

@@ -60,8 +60,7 @@ WRITERS = {
 }
 """By what names the output: a command that writes to ``{out}``. ``{made}``: a folder with what the commands read."""
 ELSEWHERE = {
-    "kit play --record": "as kit run; tests.endings",
-    "kit drive --record": "as kit play",
+    "kit drive --record": "as kit run; tests.endings",
     "kit ros pkg create --dest": "kit pkg create",
     "kit ros test --junit-xml": "kit ros launch_test",
     "kit ros bag record --output": "needs a world; tests.endings",

@@ -127,7 +127,7 @@ def test_a_world_without_a_robot_cannot_be_driven_but_runs(say: Say, tmp_path: P
 
 @pytest.mark.long
 def test_lines_are_read_until_they_end(tmp_path: Path) -> None:
-    desk = ["play", "--plain", "--workspace", str(tmp_path)]
+    desk = ["drive", "--plain", "--workspace", str(tmp_path)]
     ended = CliRunner().invoke(main, desk, input="run 1\nlook")
     assert ended.exit_code == 0
     assert ended.output.count("at 0:01.0") == 2
@@ -145,7 +145,7 @@ def test_without_any_standard_input_it_just_ends(tmp_path: Path, monkeypatch: py
 
 @pytest.mark.parametrize("arguments", [["nowhere"], ["maze", "--case", "x"], ["--controller", "nobody"]])
 def test_what_does_not_exist_ends_it_with_a_clear_word(tmp_path: Path, arguments: list[str]) -> None:
-    result = CliRunner().invoke(main, ["play", "--plain", "--workspace", str(tmp_path), *arguments])
+    result = CliRunner().invoke(main, ["drive", "--plain", "--workspace", str(tmp_path), *arguments])
     assert result.exit_code == 2
     assert result.exception is None or isinstance(result.exception, SystemExit)
     assert arguments[-1] in result.output
@@ -156,7 +156,7 @@ def test_other_terminals_look_in_while_a_line_is_awaited(tmp_path: Path) -> None
     environment = {**os.environ, "KIT_WORKSPACE": str(tmp_path)}
     kit = [sys.executable, "-m", "kit"]
     play = subprocess.Popen(
-        [*kit, "play", "simple", "--plain"],
+        [*kit, "drive", "simple", "--plain"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         env=environment,
@@ -176,7 +176,7 @@ def test_other_terminals_look_in_while_a_line_is_awaited(tmp_path: Path) -> None
 
 def test_a_drive_is_kept_when_one_leaves(tmp_path: Path) -> None:
     file = tmp_path / "drive.npz"
-    desk = ["play", "simple", "--plain", "--controller", "teleop", "--record", str(file)]
+    desk = ["drive", "simple", "--plain", "--controller", "teleop", "--record", str(file)]
     result = CliRunner().invoke(main, desk, input="drive 0.3 0 1\nrestart\ndrive 0.2 0 1\n")
     assert result.exit_code == 0
     assert str(file) in result.output
@@ -187,7 +187,7 @@ def test_a_drive_is_kept_when_one_leaves(tmp_path: Path) -> None:
 
 
 def test_a_place_that_cannot_be_written_is_told_before_the_drive(tmp_path: Path) -> None:
-    desk = ["play", "simple", "--plain", "--record", str(tmp_path / "none" / "drive.npz")]
+    desk = ["drive", "simple", "--plain", "--record", str(tmp_path / "none" / "drive.npz")]
     result = CliRunner().invoke(main, desk, input="run 1\n")
     assert result.exit_code == 2
     assert "drive.npz" in result.output

@@ -65,7 +65,7 @@ def test_a_single_mark_is_a_character_as_others() -> None:
 
 def test_a_long_path_is_broken_behind_a_slash_and_goes_on_in_the_margin_only_where_it_can_be_copied() -> None:
     path = "~/robot-kit/lessons/09-your-own-controller/follow/follow.py"
-    code = Code((f"kit play simple --controller {path}",))
+    code = Code((f"kit drive simple --controller {path}",))
     for is_beside in (False, True):
         rows = [row_text(each) for each in rows_of([code], Page(40, MARGIN, is_beside=is_beside))]
         *_, begin, end = rows
@@ -75,7 +75,7 @@ def test_a_long_path_is_broken_behind_a_slash_and_goes_on_in_the_margin_only_whe
 
 
 def test_a_word_beside_something_else_may_reach_into_the_right_margin() -> None:
-    code = Code(("kit play " + "x" * 42,))
+    code = Code(("kit drive " + "x" * 42,))
     whole = [row_text(each) for each in rows_of([code], Page(40, MARGIN, is_beside=True))]
     assert whole[-1].strip() == "x" * 42
     assert max(map(len, whole)) <= 40 + 2 * MARGIN

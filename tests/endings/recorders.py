@@ -117,12 +117,12 @@ class RunRecording(Recorder):
 
 
 class PlayRecording(RunRecording):
-    """``kit play --plain --record``, driven line by line."""
+    """``kit drive --plain --record``, driven line by line."""
 
     @property
     def words(self) -> Sequence[str]:
         drive = str(self.folder / self.file)
-        return ("-m", "kit", "play", "simple", "--plain", "--controller", "teleop", "--record", drive)
+        return ("-m", "kit", "drive", "simple", "--plain", "--controller", "teleop", "--record", drive)
 
     def type_into(self, terminal: Terminal) -> None:
         for _ in range(400):
@@ -353,7 +353,7 @@ class MapDrawing(Recorder):
 
 
 class Editing(Recorder):
-    """The editor of ``kit play``: what was typed and not saved."""
+    """The editor of ``kit drive``: what was typed and not saved."""
 
     needs_terminal = True
 
@@ -364,7 +364,7 @@ class Editing(Recorder):
 
     @property
     def words(self) -> Sequence[str]:
-        return ("-m", "kit", "play", "simple", "--controller", "mine")
+        return ("-m", "kit", "drive", "simple", "--controller", "mine")
 
     def type_into(self, terminal: Terminal) -> None:
         wait_until(lambda: b"bumps" in terminal.shown, "the robot on the screen")

@@ -104,7 +104,7 @@ def test_one_terminal_too_many_is_refused_and_the_log_says_so(begin: Callable[..
 
 def test_the_newest_world_is_meant_unless_one_is_named(begin: Callable[..., Ticking], tmp_path: Path) -> None:
     folder = sockets_folder(tmp_path)
-    with pytest.raises(WorldNotFound, match="kit play"):
+    with pytest.raises(WorldNotFound, match="kit drive"):
         find_world(folder)
     old = begin("maze")
     os.utime(old.server.path, (1, 1))

@@ -155,7 +155,7 @@ def test_own_maps_are_listed_and_shown_by_name(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setenv("KIT_WORKSPACE", str(tmp_path))
     made = make(tmp_path, HALL)
     assert made.exit_code == 0
-    assert "kit play hall\n" in made.output  # what follows finds it by its name, too
+    assert "kit drive hall\n" in made.output  # what follows finds it by its name, too
     assert str(tmp_path / "worlds" / "hall") in CliRunner().invoke(main, ["maps"]).output
     shown = CliRunner().invoke(main, ["maps", "hall"])
     assert shown.exit_code == 0

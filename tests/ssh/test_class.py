@@ -63,7 +63,7 @@ def test_twelve_accounts_drive_check_and_train_at_once() -> None:
                 server,
                 home / "robot-kit",
                 *LINK,
-                *("play", "simple", "--controller", "teleop"),
+                *("drive", "simple", "--controller", "teleop"),
                 account=name,
                 installation=installation,
             )

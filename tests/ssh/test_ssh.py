@@ -92,7 +92,7 @@ def ages(user: User, seconds: float) -> list[float]:
 
 @pytest.mark.long
 def test_the_picture_keeps_up_over_a_slow_link(connect: Connect) -> None:
-    user = connect(30_000, 0.020, "play", "--seed", "2")
+    user = connect(30_000, 0.020, "drive", "--seed", "2")
     started = shown_clock(user)
     user.until(lambda: shown_clock(user) != started, "a world that is compiled and runs")
     run_on(user, 2.0)
@@ -120,7 +120,7 @@ def test_the_picture_keeps_up_over_a_slow_link(connect: Connect) -> None:
 
 @pytest.mark.long
 def test_a_slow_link_keeps_the_themes_colours_and_the_clock_keeps_up(connect: Connect) -> None:
-    user = connect(3_000, 0.020, "play", "maze", "--controller", "random_walk", "--color", "true")
+    user = connect(3_000, 0.020, "drive", "maze", "--controller", "random_walk", "--color", "true")
     lit = COLOR_SCHEMES["dark"].palette(reduced=False)[Role.LIT_NEAR].color
     assert isinstance(lit, tuple)
     code = f"48;2;{';'.join(map(str, lit))}".encode()
@@ -135,7 +135,7 @@ def test_a_slow_link_keeps_the_themes_colours_and_the_clock_keeps_up(connect: Co
 
 
 def test_exact_keys_pass_through_ssh(connect: Connect) -> None:
-    user = connect(1e6, 0.005, "play", "simple", "--controller", "teleop")
+    user = connect(1e6, 0.005, "drive", "simple", "--controller", "teleop")
     user.until(lambda: "exact" in user.text, "the terminal's answer")
     user.send(b"\x1b[1;1:1A")
     user.until(lambda: "forward   0.50" in user.text, "full speed")
@@ -144,7 +144,7 @@ def test_exact_keys_pass_through_ssh(connect: Connect) -> None:
 
 
 def test_a_dropped_link_leaves_nothing_behind(connect: Connect, tmp_path: Path) -> None:
-    user = connect(1e6, 0.005, "play")
+    user = connect(1e6, 0.005, "drive")
     assert running(tmp_path)
     user.process.kill()
     wait_until(lambda: not running(tmp_path), lambda: f"the end of {running(tmp_path)}", every_s=0.1)

@@ -90,10 +90,10 @@ LONGEST_FRAME: Final = 3.0
 LESSONS: Final = Path(__file__).parents[2] / "lessons"
 VISITS: Final = {
     "start": ScreenVisit(),
-    "drive": ScreenVisit(("play", "maze", "--controller", "random_walk"), (), 9.0),
-    "robots-map": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("u", "2"), 6.0),
-    "editor": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("\x05",), 4.0),
-    "drive-hallway": ScreenVisit(("play", "pair_turn", "--controller", "fields"), (), 5.0),
+    "drive": ScreenVisit(("drive", "maze", "--controller", "random_walk"), (), 9.0),
+    "robots-map": ScreenVisit(("drive", "maze", "--controller", "random_walk"), ("u", "2"), 6.0),
+    "editor": ScreenVisit(("drive", "maze", "--controller", "random_walk"), ("\x05",), 4.0),
+    "drive-hallway": ScreenVisit(("drive", "pair_turn", "--controller", "fields"), (), 5.0),
     "fields": ScreenVisit(("fields", "show", "pair_turn"), (), 4.0),
     "lessons": ScreenVisit(keys=("2",)),
     "lesson": ScreenVisit(("lesson", "1"), ("n",)),
@@ -107,8 +107,8 @@ VISITS: Final = {
     "puzzle": ScreenVisit(("game",), ("\x1b[D", "\r", "\x1b[C\x1b[D" * 17, "c"), 3.0),
     "puzzle-lasers": ScreenVisit(("game",), ("\x1b[D", *["\x1b[B"] * 8, "\r", "\x1b[C\x1b[C\x1b[B "), 3.0),
     "puzzle-layers": ScreenVisit(("game",), ("\x1b[D", *["\x1b[B"] * 2, "\r", "  \x1b[B "), 3.0),
-    "nodes": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n",), 4.0),
-    "message-plot": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n", "y", "\x1b[B"), 6.0),
+    "nodes": ScreenVisit(("drive", "maze", "--controller", "random_walk"), ("n",), 4.0),
+    "message-plot": ScreenVisit(("drive", "maze", "--controller", "random_walk"), ("n", "y", "\x1b[B"), 6.0),
     "layers": ScreenVisit(keys=("6", "m", "slides-lasers\r", "3")),
     "quiz": ScreenVisit(
         ("quiz", "2"),
@@ -120,7 +120,7 @@ VISITS: Final = {
     "palette": ScreenVisit(keys=("\x10",)),
     "progress": ScreenVisit(keys=("9",)),
     "league": ScreenVisit(keys=("l",), seconds=3.0),
-    "help": ScreenVisit(("play", "simple"), ("?",)),
+    "help": ScreenVisit(("drive", "simple"), ("?",)),
     "keys": ScreenVisit(("keys",)),
     "map-drawing": ScreenVisit(("maps", "new", "hall"), ("\x1b[B" * 4 + "\x1b[C" * 9,)),
     "photo-corners": ScreenVisit(

@@ -17,7 +17,7 @@ DOT = "●"
 @pytest.fixture
 def graph() -> Iterator[User]:
     """The kit on a map, with the graph on the screen and messages on their way."""
-    user = User(KIT, "play", "simple", "--seed", "1")
+    user = User(KIT, "drive", "simple", "--seed", "1")
     user.until(lambda: "forward   0.50" in user.text, "a robot on its way")
     user.send(b"n")
     user.until(lambda: "10 Hz" in user.text and DOT in user.text, "messages on their way")

@@ -20,13 +20,13 @@ COLOURED = re.compile(rb"\x1b\[(?:\d+;)*(?:3[0-7]|4[0-7]|9[0-7]|10[0-7]|38|48)[;
 
 SCREENS = {
     "start": (("start",), b"", "Lessons"),
-    "drive": (("play", "simple"), b"", "forward"),
-    "robot's map": (("play", "simple"), b"u", "forward"),
-    "editor": (("play", "simple"), b"\x05", "rclpy"),
+    "drive": (("drive", "simple"), b"", "forward"),
+    "robot's map": (("drive", "simple"), b"u", "forward"),
+    "editor": (("drive", "simple"), b"\x05", "rclpy"),
     "levels": (("game",), b"", "First drive"),
     "level": (("game", "play", "first-drive"), b"", "The clock starts"),
     "lesson": (("lesson", "1"), b"", "Predict"),
-    "nodes": (("play", "simple"), b"n", "static_laser"),
+    "nodes": (("drive", "simple"), b"n", "static_laser"),
     "form": (("form",), b"", "highest education"),
     "trainings": (("train",), b"", "Choose a task"),
 }
@@ -126,7 +126,7 @@ def test_what_is_pasted_into_the_editor_is_text(kit: Open) -> None:
 
 
 def test_a_dumb_terminal_gets_lines(kit: Open) -> None:
-    terminal = kit("play", "simple", TERM="dumb", COLORTERM="truecolor")
+    terminal = kit("drive", "simple", TERM="dumb", COLORTERM="truecolor")
     terminal.until(lambda: "line by line" in terminal.output.decode(errors="replace"), "the line mode")
     assert b"\x1b" not in terminal.output
 

@@ -58,7 +58,7 @@ def test_a_launched_program_that_hears_nothing_is_told_of(kit: Open, tmp_path: P
 
 
 def test_the_play_screen_has_a_door_that_moves_with_the_map(kit: Open, workspace: Path) -> None:
-    terminal = kit("play", "maze")
+    terminal = kit("drive", "maze")
     (world,) = running_worlds(sockets_folder(workspace))
     assert world.name.startswith("maze-")
     terminal.until(

@@ -99,7 +99,7 @@ def resize(terminal: User, columns: int, rows: int) -> None:
 
 
 def test_the_robot_walks_by_itself_and_an_arrow_key_takes_over(kit: Open) -> None:
-    terminal = kit("play", "--seed", "1", kitty=False)
+    terminal = kit("drive", "--seed", "1", kitty=False)
     terminal.until(lambda: "random_walk" in terminal.text, "random_walk")
     terminal.until(lambda: ROBOT.search(terminal.text), "a robot")
     terminal.until(lambda: "forward   0.50" in terminal.text, "the robot on its way")
@@ -116,7 +116,7 @@ def test_the_robot_walks_by_itself_and_an_arrow_key_takes_over(kit: Open) -> Non
 
 
 def test_holding_an_exact_key_drives_until_it_is_released(kit: Open) -> None:
-    terminal = kit("play", "simple", "--controller", "teleop")
+    terminal = kit("drive", "simple", "--controller", "teleop")
     terminal.until(lambda: "exact" in terminal.text, "the terminal's answer")
     terminal.send(b"\x1b[1;1:1A")
     terminal.until(lambda: "forward   0.50" in terminal.text, "full speed")
@@ -125,7 +125,7 @@ def test_holding_an_exact_key_drives_until_it_is_released(kit: Open) -> None:
 
 
 def test_nothing_is_sent_while_paused(kit: Open) -> None:
-    terminal = kit("play")
+    terminal = kit("drive")
     terminal.send(b"p")
     terminal.until(lambda: "paused" in terminal.text, "the pause")
     assert_rests(terminal, 0.07)
@@ -138,14 +138,14 @@ def test_nothing_is_sent_while_paused(kit: Open) -> None:
 
 
 def test_speeds_change_while_running(kit: Open) -> None:
-    terminal = kit("play")
+    terminal = kit("drive")
     for key, name in ((b"2", "speed x10"), (b"3", "speed max"), (b"1", "speed x1 ")):
         terminal.send(key)
         terminal.until(lambda name=name: name in terminal.text, name)  # type: ignore[misc]  # mypy on lambdas
 
 
 def test_a_map_and_a_controller_are_chosen_by_name(kit: Open) -> None:
-    terminal = kit("play")
+    terminal = kit("drive")
     terminal.send(b"m")
     terminal.until(lambda: "Maps" in terminal.text, "the list of maps")
     terminal.send(b"roundab\r")
@@ -165,7 +165,7 @@ def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one_ru
 ) -> None:
     file = tmp_path / "mine.py"
     file.write_text(driving_program(turning=0.5))
-    terminal = kit("play", "simple", "--controller", str(file))
+    terminal = kit("drive", "simple", "--controller", str(file))
     terminal.until(lambda: "turning   0.50" in terminal.text, "the controller at work")
     file.write_text(driving_program(turning=-0.25))
     terminal.until(lambda: "turning  -0.25" in terminal.text, "the new version")
@@ -186,14 +186,14 @@ def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one_ru
 
 @pytest.mark.parametrize(("name", "sent"), [("SIGTERM", signal.SIGTERM), ("SIGHUP", signal.SIGHUP)])
 def test_a_signal_leaves_a_sane_terminal(kit: Open, name: str, sent: signal.Signals) -> None:
-    terminal = kit("play")
+    terminal = kit("drive")
     terminal.process.send_signal(sent)
     assert terminal.wait() != 0
     terminal.assert_sane()
 
 
 def test_a_storm_of_sizes_changes_nothing_but_the_size(kit: Open) -> None:
-    terminal = kit("play")
+    terminal = kit("drive")
     for columns, rows in [(40, 10), (200, 50), (1, 1), (80, 3), (3, 24), (120, 40)] * 4:
         resize(terminal, columns, rows)
         terminal.pump(0.01)
@@ -207,14 +207,14 @@ def test_a_storm_of_sizes_changes_nothing_but_the_size(kit: Open) -> None:
 def test_a_controller_that_hears_nothing_is_told_of_in_80_columns(kit: Open, tmp_path: Path) -> None:
     file = tmp_path / "deaf.py"
     file.write_text(DEAF)
-    terminal = kit("play", str(WORLD), "--controller", str(file))
+    terminal = kit("drive", str(WORLD), "--controller", str(file))
     terminal.until(lambda: tells_of_both(terminal.text), "what it says and what there is")
     terminal.send(b"\x03")
     assert terminal.wait() == 0
 
 
 def test_a_small_terminal_gives_its_room_to_the_world(kit: Open) -> None:
-    terminal = kit("play")
+    terminal = kit("drive")
     resize(terminal, 40, 10)
     run_on(terminal, 0.5)
     assert "nearest" not in terminal.text
@@ -226,7 +226,7 @@ def test_a_small_terminal_gives_its_room_to_the_world(kit: Open) -> None:
 def test_a_world_with_errors_says_so_and_leaves_the_way_out(kit: Open, tmp_path: Path) -> None:
     world = tmp_path / "world.yaml"
     world.write_text("properties: {}\nlayers: []\nmodles: []\n")
-    terminal = kit("play", str(world), ready="world.yaml:3")
+    terminal = kit("drive", str(world), ready="world.yaml:3")
     terminal.until(lambda: "models" in terminal.text and "any key closes" in terminal.text, "what is wrong")
     terminal.send(b" ")
     terminal.until(lambda: "any key closes" not in terminal.text, "the empty screen")
@@ -239,7 +239,7 @@ def test_a_world_with_errors_says_so_and_leaves_the_way_out(kit: Open, tmp_path:
 
 
 def test_ascii_glyphs_mean_ascii_everywhere(kit: Open) -> None:
-    terminal = kit("play", "--glyphs", "ascii")
+    terminal = kit("drive", "--glyphs", "ascii")
     terminal.until(lambda: re.search("[<>^v]", terminal.text), "the robot")
     terminal.send(b"?")
     terminal.until(lambda: "any key closes" in terminal.text, "the help")
@@ -262,7 +262,7 @@ def test_a_recorded_run_is_watched_again_and_stands_still_at_its_end(kit: Open, 
 
 def test_what_the_keys_drove_is_kept_when_one_leaves(kit: Open, tmp_path: Path) -> None:
     file = tmp_path / "drive.npz"
-    terminal = kit("play", "simple", "--controller", "teleop", "--record", str(file))
+    terminal = kit("drive", "simple", "--controller", "teleop", "--record", str(file))
     terminal.until(lambda: "exact" in terminal.text, "the terminal's answer")
     terminal.send(b"\x1b[1;1:1A")
     terminal.until(lambda: "forward   0.50" in terminal.text, "full speed")
@@ -274,7 +274,7 @@ def test_what_the_keys_drove_is_kept_when_one_leaves(kit: Open, tmp_path: Path) 
 
 
 def test_the_keys_drive_a_robot_in_a_namespace(kit: Open) -> None:
-    terminal = kit("play", "pair_straight", "--controller", "teleop")
+    terminal = kit("drive", "pair_straight", "--controller", "teleop")
     terminal.until(lambda: "exact" in terminal.text, "the terminal's answer")
     terminal.send(b"\x1b[1;1:1A")
     terminal.until(lambda: "forward   0.50" in terminal.text, "full speed")
@@ -282,7 +282,7 @@ def test_the_keys_drive_a_robot_in_a_namespace(kit: Open) -> None:
 
 @pytest.mark.parametrize("key", [b"?", b"m", b"c", b"n"])
 def test_ctrl_c_leaves_from_wherever_one_is(kit: Open, key: bytes) -> None:
-    terminal = kit("play")
+    terminal = kit("drive")
     terminal.send(key)
     run_on(terminal, 0.5)
     terminal.send(b"\x03")
@@ -295,7 +295,7 @@ def test_ctrl_c_leaves_from_wherever_one_is(kit: Open, key: bytes) -> None:
 @pytest.mark.parametrize("sent", ["SIGTERM", "SIGHUP", "SIGTERM SIGTERM", "hang up"])
 def test_every_end_keeps_the_drive(kit: Open, tmp_path: Path, sent: str, plain: tuple[str, ...]) -> None:
     file = tmp_path / "drive.npz"
-    words = ("play", "simple", "--controller", "random_walk", "--record", str(file), *plain)
+    words = ("drive", "simple", "--controller", "random_walk", "--record", str(file), *plain)
     if plain:
         terminal = kit(*words, ready="Type help")
         terminal.send(b"run 2\n")

@@ -86,7 +86,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
 def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -> None:
     started = kit(*TABLE, "--detach", "--keep-training", "--steps", "100000000")
     assert started.wait() == 0
-    terminal = kit("play", "simple", "--glyphs", "ascii")
+    terminal = kit("drive", "simple", "--glyphs", "ascii")
     terminal.until(lambda: "0:0" in terminal.text, "a world")
     terminal.send(b"t")
     terminal.until(lambda: "Trainings" in terminal.text and "mine" in terminal.text, "the list")

@@ -1,4 +1,4 @@
-"""A manual drive recorded by ``kit play --record``: replayed from its inputs, then graded like any other drive.
+"""A manual drive recorded by ``kit drive --record``: replayed from its inputs, then graded like any other drive.
 
 The poses in the file prove nothing. What counts is where the same inputs lead in the grader's own world; ``genuine``
 measures how far that is from what the file claims. A reset begins a new attempt, and the best attempt is graded. ::
@@ -149,7 +149,7 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
     ):  # its world may be another one, with ice or carts: nothing that a task is posed on
         raise RecordingError(
             f"This is a drive of the game's level {recording.level}; the task asks for one on the map itself: "
-            f"kit play {scenario.name}{'' if case is None else f' --case {case}'} --controller teleop --record {file.name}"
+            f"kit drive {scenario.name}{'' if case is None else f' --case {case}'} --controller teleop --record {file.name}"
         )
     if recording.step_size != STEP or recording.seed < 0:
         raise RecordingError(f"Its ticks last {recording.step_size} s; those of the kit last {STEP} s.")

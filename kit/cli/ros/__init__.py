@@ -64,7 +64,7 @@ class RosGroup(LazyGroup):
     everywhere=(PLAIN_OPTION,),
     verbs=VERBS,
     absent=ABSENT,
-    epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` runs. If several run, the newest is used, "
+    epilog="A world runs while `kit drive`, `kit launch` or `kit run --serve` runs. If several run, the newest is used, "
     "or the one given by --world. Times are simulated. Ctrl-C stops a command that keeps running. A command takes effect when it "
     "arrives, at no certain instant of simulated time: one that is to come at the same instant in every run belongs in a launch "
     f"file, in a TimerAction. Commands of `ros2` that are not here: {', '.join(ABSENT)}.",

@@ -86,7 +86,7 @@ you set, and stop the robot when they end. Read `kit bridge zenoh --help` before
             """
 - There is one graph on this machine; no domain, no discovery over a network, no build step.
 - Time is the world's: `node.get_clock().now()` and `time.sleep()` follow it at any speed.
-- A callback that takes long holds the world up in lock-step, as graded runs are; `kit play` lets the world run on.
+- A callback that takes long holds the world up in lock-step, as graded runs are; `kit drive` lets the world run on.
 - What is absent says so when it is imported, with the nearest name that is there.
 """,
         ),

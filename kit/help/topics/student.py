@@ -26,7 +26,7 @@ line by line; `kit doctor` says what was found, and why.
         chapter(
             "Drive and look again",
             """
-    kit play maze
+    kit drive maze
     kit run maze --seed 1 --record run.npz
     kit replay run.npz
     kit replay run.npz --check
@@ -40,7 +40,7 @@ bit: `--check` runs it again and compares every pose.
             "Write a controller",
             """
 The first start puts `my_controller.py` into `~/robot-kit/controllers`: an ordinary ROS 2 node. Edit it in your own editor
-while `kit play maze` is open; `c` lets it drive, and each time you save, the robot uses the new file.
+while `kit drive maze` is open; `c` lets it drive, and each time you save, the robot uses the new file.
 
     kit run maze --controller my_controller.py --steps 3000 --seed 1
 
@@ -76,7 +76,7 @@ A training is a process of its own: it goes on when you leave the screen or the 
             "Make a map",
             """
     kit maps new hall --from hall.txt
-    kit play ~/robot-kit/worlds/hall
+    kit drive ~/robot-kit/worlds/hall
 
 `hall.txt` is a drawing: `#` is wall, `S` the start and `T` the target, a character is 0.5 m wide, or what `--cell` says.
 `kit maps new hall` draws on the screen instead, `kit maps from-photo PICTURE --width METRES` reads a photograph of paper.

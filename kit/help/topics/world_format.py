@@ -118,7 +118,7 @@ def _chapters() -> tuple[Chapter, ...]:
                 for part in (f"`{name}`", Code(tuple(text.splitlines())))
             ),
             "`kit world check world.yaml` reports every mistake of all files at once, with line and column, and what collides "
-            "and what each laser sees. `kit play world.yaml` opens it.",
+            "and what each laser sees. `kit drive world.yaml` opens it.",
         ),
         chapter(
             "In every file",

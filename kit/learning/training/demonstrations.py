@@ -173,7 +173,7 @@ def _case_of(recording: Recording, task: LearningTask, title: str) -> int:
         places = ", ".join(dict.fromkeys(card.name for card, _ in cases))
         raise DemonstrationError(
             f"{title} was driven on {recording.place}; task {task.name} is on {places}. Record a drive there: "
-            f"`kit play {cases[0][0].name} --controller teleop --record FILE.npz`."
+            f"`kit drive {cases[0][0].name} --controller teleop --record FILE.npz`."
         )
     return next((number for number in fitting if cases[number][1].name == recording.case), fitting[0])
 

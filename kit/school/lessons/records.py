@@ -225,7 +225,7 @@ class LessonStep:
         """The step's commands; in place of each that inspects a world, the one that opens this world."""
         made = [each for each in self.commands if each.kind is not CommandKind.BESIDE]
         places = dict.fromkeys(each.map_name for each in self.commands if each.kind is CommandKind.BESIDE)
-        worlds = [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
+        worlds = [LessonCommand(f"kit drive {place}", CommandKind.SCREEN, place) for place in places]
         return list({each.line: each for each in (*made, *worlds)}.values())
 
     @property

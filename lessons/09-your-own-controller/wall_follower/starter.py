@@ -1,6 +1,6 @@
 """Follow the wall on the right at a set distance.
 
-Save this file and watch the robot: kit play house --controller (this
+Save this file and watch the robot: kit drive house --controller (this
 file).
 """
 

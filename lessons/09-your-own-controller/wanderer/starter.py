@@ -1,6 +1,6 @@
 """Keep going, and touch nothing.
 
-Save this file and watch the robot: kit play maze --controller (this
+Save this file and watch the robot: kit drive maze --controller (this
 file).
 """
 

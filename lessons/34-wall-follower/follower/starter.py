@@ -1,6 +1,6 @@
 """Follow a wall at a set distance, on the side that the parameter says.
 
-Save this file and watch the robot: kit play office --controller (this
+Save this file and watch the robot: kit drive office --controller (this
 file).
 """
 

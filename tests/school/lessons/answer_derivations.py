@@ -119,7 +119,7 @@ def who(page: ExercisePage) -> Answers:
 
 
 def which_in_services(page: ExercisePage) -> Answers:
-    with page.open_world("kit play maze") as world:
+    with page.open_world("kit drive maze") as world:
         printed = page.ask(world, "kit ros param list", answer=r"^/random_walk:")
     names = found(r"^/random_walk:\n((?:  .*\n?)+)", printed).split()
     return {"count": exact(len(set(names) - {"use_sim_time"}))}
@@ -221,7 +221,7 @@ def evidence(page: ExercisePage) -> Answers:
 def readout(page: ExercisePage) -> Answers:
     topics = page.questions["pressed"].choices
     echo = "kit ros topic echo /teleopkeys"
-    with page.open_world("kit play simple --controller teleop") as world:
+    with page.open_world("kit drive simple --controller teleop") as world:
         assert re.search(r"^.*\bdistance +[\d.]+ m", world.user.text, re.M), "the row that a question names"
         heard = {
             topic: page.ask(world, echo.replace("/teleopkeys", topic), r"^---", like=echo, keys=HOLD_UP)
@@ -256,7 +256,7 @@ def _only(heard: Mapping[str, str], pattern: str) -> tuple[str, ...]:
 
 def live(page: ExercisePage) -> Answers:
     bandwidth = "kit ros topic bw /odom"
-    with page.open_world("kit play simple") as world:
+    with page.open_world("kit drive simple") as world:
         listeners = page.ask(world, "kit ros topic info -v /cmd_vel", r"^Subscription count: [1-9]")
         rates = page.ask(world, "kit ros topic hz /tf", "average rate")
         bytes_a_second = {

@@ -103,7 +103,7 @@ def test_a_long_path_is_there_to_the_last_character() -> None:
 
 
 def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
-    line = "kit play simple --controller /home/" + "ada/" * 12 + "controller.py --seed 1"
+    line = "kit drive simple --controller /home/" + "ada/" * 12 + "controller.py --seed 1"
     rows = [row_text(each) for each in shown([Code((line,))])]
     assert len(rows) > 1
     assert all(len(part) <= 78 for part in rows)

@@ -1,4 +1,4 @@
-"""``kit play``: opens a map on the full screen, or line by line where there is none."""
+"""``kit drive``: opens a map on the full screen, or line by line where there is none."""
 
 from __future__ import annotations
 
@@ -54,10 +54,10 @@ def command(
     Press an arrow key to take over, `?` for all keys, Ctrl-C to leave.
 
     \b
-    kit play                          the maze, driven by a random walk
-    kit play house --controller teleop
-    kit play my_world/world.yaml --controller my_controller.py
-    kit play simple --controller teleop --record drive.npz
+    kit drive                         the maze, driven by a random walk
+    kit drive house --controller teleop
+    kit drive my_world/world.yaml --controller my_controller.py
+    kit drive simple --controller teleop --record drive.npz
     """
     from kit.inspection.sockets import sockets_folder
 
