@@ -170,7 +170,7 @@ PRINTED = [
     ("kit", "layers", "example"),
     ("kit", "layers", "explain", "slides-lasers"),
     ("kit", "game", "--plain"),
-    ("kit", "game", "challenge"),
+    ("kit", "game", "puzzle"),
     ("kit", "game", "leaderboard"),
     ("kit", "progress"),
     ("kit", "study"),

@@ -103,7 +103,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game race mine/task.yaml --agent my_run   use your own task
     kit game replay left-turn             replay your best drive
     kit game daily                        today's maze, the same for everyone
-    kit game challenge                    puzzles without driving
+    kit game puzzle                       puzzles without driving
     kit game host two-doors --tag         two players: a race or tag
     kit game leaderboard                  the best times on this machine
 
@@ -228,15 +228,15 @@ def daily(context: click.Context, controller: str | None, plain: bool) -> None:
         context.invoke(race_, level=level.id, controller=controller, agent=None)
 
 
-@command.command("challenge")
+@command.command("puzzle")
 @click.argument("name", required=False)
 @click.argument("answer", required=False)
 @click.pass_obj
 def challenge(workspace: Path | None, name: str | None, answer: str | None) -> None:
-    """Solve challenges without driving. Break a reward, beat a layer plan, train within a budget, mount the fewest
+    """Solve puzzles without driving. Break a reward, beat a layer plan, train within a budget, mount the fewest
     lasers, or repair a launch file against the clock.
 
-    Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: its file, what the file would hold
+    Without NAME, list them; with NAME, show one. ANSWER depends on the puzzle: its file, what the file would hold
     (moves, numbers), or the name of a training run. A better answer earns a better medal.
     """
     from kit.school.game.challenge import AnswerError, AnswerSubmission
@@ -276,7 +276,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                     click.echo(
                         f"Your file: {file}\nGold until {clock[0]:.0f} s, silver until {clock[1]:.0f} s; the clock is at {seconds:.0f} s."
                     )
-                click.echo(f"To hand in: kit game challenge {chosen.id} ANSWER")
+                click.echo(f"To hand in: kit game puzzle {chosen.id} ANSWER")
                 return
             answer = chosen.task.parse_answer(answer)
             judgement = chosen.task.judge(AnswerSubmission(answer, opened_workspace.runs, seconds))
@@ -456,9 +456,7 @@ def _print_levels(summary: GameSummary) -> None:
         columns = (Column(""), *[Column("", CellStyle.TEXT)] * 4)
         blocks.append(Table(world.id, f"{world.title}: {world.story}", columns, tuple(rows), indent=1))
     won = sum(medal is not Medal.NONE for medal in summary.challenges)
-    challenges = (
-        f"Challenges: {won} of {len(summary.challenges)} with a medal; `kit game challenge` lists them."
-    )
+    challenges = f"Puzzles: {won} of {len(summary.challenges)} with a medal; `kit game puzzle` lists them."
     ways = f"{medal_counts(summary)}. `kit game play NAME` drives a level by hand."
     click.echo("\n".join(lines_of([*blocks, Text(challenges), Text(ways)])))
 

@@ -62,7 +62,7 @@ def find_challenge(name: str) -> Challenge:
 
 def answers_folder(workspace: Workspace) -> Path:
     """The folder of the answers' files."""
-    return workspace.folder / "challenges"
+    return workspace.folder / "puzzles"
 
 
 def starts_clock(journal: ProgressJournal, challenge: Challenge) -> bool:

@@ -109,7 +109,7 @@ class GameWorld:
 
 
 CHALLENGES_WORLD: Final = GameWorld(
-    "challenges", "The workshop", "Not all work is driving: plans, rewards, budgets, other people's code."
+    "challenges", "Puzzles", "Not all work is driving: plans, rewards, budgets, other people's code."
 )
 """Of the levels' list: all challenges."""
 

@@ -44,7 +44,7 @@ from kit.tui.rows.progress_marks import share_bar
 from kit.world.problems import WorldError
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
-HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"
+HEADER: Final = f"  {'puzzle':<{TITLE_COLUMNS}} medal  lesson"
 LEAST_TEXT: Final = 36
 """Columns of a puzzle's text beside its board, at least."""
 WIDEST_TEXT: Final = 76

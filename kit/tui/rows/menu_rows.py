@@ -44,7 +44,7 @@ MENU: Final = (
     MenuItem("lessons", "Lessons", "In order: predict, run, explain, change, make.", "course exercises"),
     MenuItem("drive", "Drive", "Any map and any program, your own too.", "play simulate controller"),
     MenuItem(
-        "levels", "Levels", "The game: drive for medals, race programs and agents.", "puzzles challenges"
+        "levels", "Game", "Levels and puzzles: drive for medals, race programs, agents.", "levels medals"
     ),
     MenuItem(
         "train", "Train", "Train an agent to drive, and watch it learn.", "trainings learning runs sweeps"

@@ -281,7 +281,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     def _note_progress(self, progress: str) -> None:
         if self._is_left.is_set():  # nobody waits for it any more: the check ends
-            raise AnswerError("The challenge was left during its check.")
+            raise AnswerError("The puzzle was left during its check.")
         self._doing = progress
 
     async def _choose_run(self) -> str | None:
@@ -312,4 +312,4 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             self.dismiss()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A challenge", self.screen_actions, without=self.unavailable_actions))
+        self.app.push_screen(HelpDialog("A puzzle", self.screen_actions, without=self.unavailable_actions))

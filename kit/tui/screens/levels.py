@@ -266,7 +266,7 @@ class LevelsScreen(RowsScreen[None]):
         if not self.size.width or not self._found or not self.query(TextRows):
             return
         summary = GameSummary(self._found, tuple(self._challenge_medals.values()))
-        counts, title = f"{level_rows.medal_counts(summary)} ", " The game   "
+        counts, title = f"{level_rows.medal_counts(summary)} ", " Game   "
         daily = self._daily_text(self.size.width - len(counts) - len(title) - 1)
         self._rows("heading").show(
             [at_both_edges(row((title, "bold"), (daily, "dim")), row((counts, "bold")), self.size.width)]
@@ -550,7 +550,7 @@ class LevelsScreen(RowsScreen[None]):
         self._load_ghosts()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Levels", self.screen_actions, NOTES))
+        self.app.push_screen(HelpDialog("Game", self.screen_actions, NOTES))
 
     @work(exclusive=True, group="drive")
     async def action_open(self) -> None:
@@ -573,7 +573,7 @@ class LevelsScreen(RowsScreen[None]):
                 kind = PuzzleScreen if is_played else ChallengeScreen
                 screen = kind(self._theme, challenge, self._progress, self._workspace, title)
             except (ProgressError, OSError) as error:
-                self.app.push_screen(MessageDialog("The challenge could not start", str(error)))
+                self.app.push_screen(MessageDialog("The puzzle could not start", str(error)))
                 return
             await self.app.push_screen_wait(screen)
             self._read()

@@ -29,7 +29,7 @@ def test_the_verb_lists_shows_judges_and_keeps_the_best(tmp_path: Path) -> None:
     challenge = next(each for each in all_challenges() if each.task.kind == "exploit")
 
     def said(*words: str) -> str:
-        result = CliRunner().invoke(command, ["--workspace", str(tmp_path), "challenge", *words])
+        result = CliRunner().invoke(command, ["--workspace", str(tmp_path), "puzzle", *words])
         assert result.exit_code == 0, result.output
         return result.output
 
@@ -53,7 +53,7 @@ def test_the_verb_takes_an_answers_file_wherever_it_lies(challenge, tmp_path: Pa
         challenge.task.judge(AnswerSubmission(challenge.task.parse_answer(str(file)), tmp_path)).medal
         is Medal.NONE
     )
-    words = ["--workspace", str(tmp_path), "challenge", challenge.id, str(file)]
+    words = ["--workspace", str(tmp_path), "puzzle", challenge.id, str(file)]
     result = CliRunner().invoke(command, words)
     assert (result.exit_code, "no medal" in result.output) == (0, True), result.output
     file.unlink()

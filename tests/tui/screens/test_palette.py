@@ -77,10 +77,10 @@ def test_it_finds_puzzles_and_opens_those_without_a_clock(house: House, name: st
         ("two players", "Two players"),
         ("daily", "Today's maze"),
         ("maze", "Today's maze"),
-        ("race", "Levels"),
+        ("race", "Game"),
         ("league", "League"),
         ("settings", "Key test"),
-        ("puzzles", "Levels"),
+        ("puzzles", "Game"),
         ("scores", "Quiz"),
     ],
 )
