@@ -476,16 +476,16 @@ def test_yesterdays_level_stays_a_day_with_who_drove_it_then(
             monkeypatch.setattr(module, "today", lambda: now + datetime.timedelta(days=days))
             monkeypatch.setattr(module, "yesterday", lambda: now + datetime.timedelta(days=days - 1))
 
-    assert on_the_board() == ["Today's level"]
+    assert on_the_board() == ["Today's maze"]
     let_pass(1)
-    assert on_the_board() == ["Yesterday's level"]
+    assert on_the_board() == ["Yesterday's maze"]
     let_pass(2)
     assert on_the_board() == []
     let_pass(1)
     late = daily_level(now - datetime.timedelta(days=1))  # driven today, when it was over
     let_pass(0)
     publish_drives(tmp_path, "Ada", {(late.id, KEYS): [keys_drive(late)[1]]})
-    assert on_the_board() == ["Today's level"]
+    assert on_the_board() == ["Today's maze"]
 
 
 @pytest.mark.usefixtures("of_many_users")
