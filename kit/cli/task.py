@@ -25,7 +25,7 @@ from kit.learning.authoring.task_text import (
     tasks_table,
 )
 from kit.learning.policies.policy_node import node_refusals
-from kit.learning.tasks.catalogue import all_tasks, find_task
+from kit.learning.tasks.catalogue import dissertation_tasks, find_task, first_tasks
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.own_files import own_task_files, workspace_folders, workspace_task_file
 from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
@@ -202,7 +202,11 @@ def list_tasks() -> None:
     """List the kit's tasks, and your own task files in the workspace."""
     own = [(task_name(file), str(file)) for file in own_task_files(workspace_folders())]
     ways = "`kit task show NAME` shows one, `kit task new MINE --from NAME` starts your own from it."
-    tables = [tasks_table(all_tasks()), *([labelled_table(own, "Your own:", indent=2)] if own else [])]
+    tables = [
+        tasks_table(first_tasks()),
+        tasks_table(dissertation_tasks(), "As in the dissertation:", indent=2),
+        *([labelled_table(own, "Your own:", indent=2)] if own else []),
+    ]
     click.echo("\n".join(lines_of([*tables, Text(ways)])))
 
 

@@ -18,8 +18,9 @@ from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen, show_screen
 from kit.cli.shared_game import join_shared_game
 from kit.document.layout import lines_of
+from kit.learning.authoring.task_text import tasks_table
 from kit.learning.maps.batch_map import UnsupportedWorld
-from kit.learning.tasks.catalogue import all_tasks
+from kit.learning.tasks.catalogue import all_tasks, dissertation_tasks, first_tasks
 from kit.learning.tasks.disturbances import UniformRange
 from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.rewards import REWARDS
@@ -428,7 +429,9 @@ def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
 
 def _list_tasks() -> list[str]:
     tasks = all_tasks()
-    lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in tasks)]
+    lines = ["Tasks:", *lines_of([tasks_table(first_tasks(), indent=2)])]
+    lines += ["\nTasks as in the dissertation (-as-run: as its code ran, not as its text says):"]
+    lines += lines_of([tasks_table(dissertation_tasks(), indent=2)])
     lines.append("\nCases, by group:")
     for task in tasks:
         if task.name.endswith(("-seed", "-seed-49")):  # the same cases as its namesake's

@@ -39,9 +39,10 @@ SHAPE = re.compile(r"^\(\.\.\.(, R)?(, \d+)?\):? ?")
 """Start of the description of a transition's field: its shape for many worlds."""
 
 
-def tasks_table(tasks: Iterable[LearningTask]) -> Table:
+def tasks_table(tasks: Iterable[LearningTask], title: str = "", *, indent: int = 0) -> Table:
     """The tasks there are: a name, and what is learned."""
-    return labelled_table((ToneText(task.name, Tone.BOLD), task.summary) for task in tasks)
+    rows = ((ToneText(task.name, Tone.BOLD), task.summary) for task in tasks)
+    return labelled_table(rows, title, indent=indent)
 
 
 def task_blocks(task: LearningTask) -> list[Block]:

@@ -69,10 +69,19 @@ def _kit_task(name: str) -> LearningTask:
 
 
 def all_tasks() -> tuple[LearningTask, ...]:
-    """Every task of the kit's: the three of the dissertation as the kit poses them, then our own by name, then its variants."""
+    """Every task of the kit's: those to begin with, then those as in the dissertation."""
+    return (*first_tasks(), *dissertation_tasks())
+
+
+def first_tasks() -> tuple[LearningTask, ...]:
+    """The three tasks of the dissertation as the kit poses them, then our own by name."""
     own = [name for name in task_names() if name not in {task.name for task in TASKS}]
-    first = (TURN, HALLWAY, WHEELCHAIRS)
-    return (*first, *map(find_task, own), *(each for each in TASKS if each not in first))
+    return (TURN, HALLWAY, WHEELCHAIRS, *map(find_task, own))
+
+
+def dissertation_tasks() -> tuple[LearningTask, ...]:
+    """The variants by which the dissertation's numbers are repeated: as its text or its code has them."""
+    return tuple(each for each in TASKS if each not in (TURN, HALLWAY, WHEELCHAIRS))
 
 
 TURN: Final = find_task("turn")

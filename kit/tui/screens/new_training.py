@@ -20,6 +20,7 @@ from kit.dialogue.dialogue import Panel
 from kit.dialogue.screen_action import ScreenAction
 from kit.document.blocks import Block, labelled_table
 from kit.document.rows import MARGIN, at_both_edges, lines_shown, row
+from kit.plain_text import counted
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.rows.setting_rows import settings
@@ -41,6 +42,8 @@ LIST_WIDTH, WIDEST_LIST = 60, 84
 """Columns of the settings, then."""
 FIRST_TASK: Final = "turn"
 """The task that is offered first."""
+DISSERTATION: Final = " dissertation"
+"""Instead of the name of a task, of which none begins with a blank."""
 ALL: Final = "all"
 OWN_REWARD: Final = "the task's own"
 PRESETS: Final[Mapping[PresetName, str]] = {
@@ -215,8 +218,10 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         return await self.app.push_screen_wait(Picker(title, items, chosen))
 
     async def _choose_task(self) -> None:
-        items = await to_thread(_task_items, self._folders())
+        items, variants = await to_thread(_task_items, self._folders())
         chosen = await self._pick("Task", items, self.settings.task)
+        if chosen == DISSERTATION:
+            chosen = await self._pick("As in the dissertation", variants, self.settings.task)
         if chosen is not None and chosen != self.settings.task:
             self.settings = replace(self.settings, task=chosen, cases=())
 
@@ -348,16 +353,23 @@ def _preset_blocks(choices: TrainingChoices) -> Sequence[Block]:
     return [labelled_table(about, is_tight=True)]
 
 
-def _task_items(folders: tuple[Path, ...]) -> list[PickerItem]:
-    """The kit's tasks, then the user's own. In another thread: the learning side takes a moment to import."""
-    from kit.learning.tasks.catalogue import all_tasks
+def _task_items(folders: tuple[Path, ...]) -> tuple[list[PickerItem], list[PickerItem]]:
+    """The user's own tasks, the kit's, and a line for those as in the dissertation; and these. In another thread: the learning
+    side takes a moment to import."""
+    from kit.learning.tasks.catalogue import dissertation_tasks, first_tasks
     from kit.learning.tasks.own_files import own_task_files
 
     own = [
         PickerItem(str(file), _short_name(file), f"your own, in {file.parent}")
         for file in own_task_files(folders)
     ]
-    return [*own, *(PickerItem(task.name, task.name, task.summary) for task in all_tasks())]
+    first, variants = (
+        [PickerItem(task.name, task.name, task.summary) for task in tasks]
+        for tasks in (first_tasks(), dissertation_tasks())
+    )
+    text = f"{counted(len(variants), 'task')} to repeat its numbers: its rewards, actions and endings"
+    names = " ".join(each.name for each in variants)
+    return [*own, *first, PickerItem(DISSERTATION, "dissertation", text, names)], variants
 
 
 def _short_name(file: Path) -> str:

@@ -381,9 +381,9 @@ def _read_runs(folder: Path) -> Sequence[RunOverview]:
 
 
 def _read_tasks() -> Sequence[LearningTask]:
-    from kit.learning.tasks.catalogue import all_tasks
+    from kit.learning.tasks.catalogue import first_tasks
 
-    return all_tasks()
+    return first_tasks()
 
 
 def _test_rows(run: TrainingRun, columns: int) -> list[str]:

@@ -12,7 +12,14 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.policies.policy_node import leader_frame
 from kit.learning.tasks.actions import MAX_SPEED, MAX_TURN_RATE, ContinuousActions
 from kit.learning.tasks.case_reader import MAX_PLACES
-from kit.learning.tasks.catalogue import all_tasks, find_task, task_names, tasks_folder
+from kit.learning.tasks.catalogue import (
+    all_tasks,
+    dissertation_tasks,
+    find_task,
+    first_tasks,
+    task_names,
+    tasks_folder,
+)
 from kit.learning.tasks.goals.cover import CoverGoal
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.task_reader import MAX_ACTIONS, MAX_FRAMES, read_task
@@ -337,3 +344,10 @@ def test_a_task_adds_carts_to_its_map(tmp_path: Path) -> None:
     file.write_text(carts.replace("duration: 6", "duration: 0") + text)
     with pytest.raises(WorldError, match=r"task.yaml:1:.*duration"):
         read_task(file)
+
+
+def test_a_newcomer_meets_the_dissertations_variants_apart() -> None:
+    assert {each.name for each in first_tasks()} >= {"turn", "hallway", "wheelchairs"}
+    assert not {each.name for each in first_tasks()} & {each.name for each in dissertation_tasks()}
+    assert all("-seed" in each.name for each in dissertation_tasks())
+    assert not any("-seed" in each.name for each in first_tasks())

@@ -187,6 +187,23 @@ def test_a_new_training_has_what_was_chosen(folder: Path, monkeypatch: pytest.Mo
     assert run.reward.read_text() == reward.read_text()
 
 
+def test_the_tasks_as_in_the_dissertation_are_behind_one_line(folder: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "A new training")
+        await pilot.press("enter")
+        await seen(pilot, " Task ")
+        assert "-seed" not in text(pilot)
+        await pilot.press(*"wheelchairs-seed", "enter")
+        await seen(pilot, "As in the dissertation")
+        await pilot.press(*"49-wide-as", "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, NewTrainingScreen), "the form")
+        screen = pilot.app.screen
+        assert isinstance(screen, NewTrainingScreen)
+        assert screen.settings.task == "wheelchairs-seed-49-wide-as-run"
+
+    stage(lambda theme: NewTrainingScreen(theme, folder), scene)
+
+
 @pytest.mark.long
 def test_the_training_begun_last_is_chosen_in_the_list(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("kit.learning.training.worker.start_worker", lambda run: None)
@@ -280,7 +297,7 @@ def test_whoever_has_no_training_is_told_what_comes_after_where_there_is_room(
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "No trainings yet")
         assert all((title.text in text(pilot)) is is_told for title, _ in AFTERWARDS)
-        assert "23 tasks" in rows(pilot)[0]
+        assert "14 tasks" in rows(pilot)[0]
 
     stage(lambda theme: TrainingsScreen(theme, tmp_path / "none"), scene, size=size)
 
