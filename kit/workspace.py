@@ -160,7 +160,7 @@ def write_atomically(path: Path, data: bytes, *, follows_links: bool = True) -> 
 @contextmanager
 def draft_folder(parent: Path) -> Iterator[Path]:
     """Yields an empty hidden folder in ``parent``, to be filled and then renamed to what it shall be: so nobody finds a part of
-    it. What has not been renamed when the block ends, in whatever way, is removed. Raises OSError.
+    it. What has not been renamed when the block ends, in whatever way, is removed. Raises OSError, which names ``parent``.
 
     >>> with tempfile.TemporaryDirectory() as name, draft_folder(Path(name)) as draft:
     ...     _ = draft.joinpath("map.yaml").write_text("")
@@ -168,7 +168,10 @@ def draft_folder(parent: Path) -> Iterator[Path]:
     'hall'
     """
     draft = parent / f"{DRAFT_PREFIX}{secrets.token_hex(8)}"
-    draft.mkdir()
+    try:
+        draft.mkdir()
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(parent)) from None
     try:
         yield draft
     finally:

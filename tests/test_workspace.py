@@ -165,3 +165,10 @@ def test_a_common_folder_of_another_user_is_refused(tmp_path: Path) -> None:
     assert "belongs to another user" in open_common_folder(folder)
     os.chown(folder, 0, 0)
     assert open_common_folder(folder) == ""
+
+
+def test_a_draft_that_cannot_be_made_blames_the_folder_and_not_its_own_hidden_name(tmp_path: Path) -> None:
+    missing = tmp_path / "away"
+    with pytest.raises(OSError, match="away") as found, draft_folder(missing):
+        pass
+    assert found.value.filename == str(missing)
