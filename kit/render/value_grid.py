@@ -1,7 +1,8 @@
 """The values of a grid world as characters: in each cell the best move's arrow and its value, and the robot.
 
-Where there is room a cell has two rows, the arrow above the value; else one, the arrow before it or alone. Shapes and numbers say
-everything; colour only repeats it: strong arrows lead from the start to the target.
+Where there is much room a cell has the arrow in its middle and around it the value of each move, on the side that the move leads
+to; where there is less two rows, the arrow above the value; else one, the arrow before it or alone. Shapes and numbers say everything;
+colour only repeats it: strong arrows lead from the start to the target.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ NARROWEST_CELL_WITH_VALUE: Final = 3
 """Columns, where the value has a row of its own."""
 NARROWEST_CELL_IN_ONE_ROW: Final = 5
 """Columns, where arrow and value share a row."""
+ALL_MOVES_CELL: Final = (3, 13)
+"""Rows and columns of a cell with the values of all moves."""
 SMALL_VALUE_CELL: Final = 5
 """Columns from which on a value has decimals."""
 WALL_SIGN, CLIFF_SIGN, START_SIGN, TARGET_SIGN, SMALL_TARGET_SIGN = "#CSGg"
@@ -48,6 +51,8 @@ class ValueGrid:
     """The cells along the best moves from the start."""
     changed: tuple[int, int] | None = None
     """The cell whose value changed last."""
+    all_values: FloatArray | None = None
+    """(rows, columns, 4): the value of each move, counter-clockwise from the right; nan where nothing was learned yet."""
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -65,18 +70,19 @@ def draw_value_grids(grids: Sequence[ValueGrid], columns: int, rows: int, encode
     return frame
 
 
-def value_grids_width(grids: Sequence[ValueGrid], columns: int) -> int:
-    """Columns that the grids take of ``columns``."""
+def value_grids_width(grids: Sequence[ValueGrid], columns: int, rows: int) -> int:
+    """Columns that the grids take of ``columns`` x ``rows`` characters."""
     room = (columns - GRID_GAP * (len(grids) - 1)) // max(1, len(grids))
-    return sum(_cell_width(grid, room) * grid.shape[1] + 2 for grid in grids) + GRID_GAP * (len(grids) - 1)
+    widths = (_cell_size(grid, room, rows)[2] * grid.shape[1] + 2 for grid in grids)
+    return sum(widths) + GRID_GAP * (len(grids) - 1)
 
 
 def value_grids_height(grids: Sequence[ValueGrid], columns: int, rows: int) -> int:
     """Rows that the highest grid takes of ``rows``, with its title."""
     room = (columns - GRID_GAP * (len(grids) - 1)) // max(1, len(grids))
-    heights = [_grid_rows(grid, _cell_width(grid, room), rows) for grid in grids]
+    sizes = [_cell_size(grid, room, rows) for grid in grids]
     return max(
-        (top + height * grid.shape[0] + 2 for grid, (top, height) in zip(grids, heights, strict=True)),
+        (top + height * grid.shape[0] + 2 for grid, (top, height, _) in zip(grids, sizes, strict=True)),
         default=0,
     )
 
@@ -98,23 +104,21 @@ def value_text(value: float, width: int) -> str:
     return "<" if value < 0 else ">"
 
 
-def _cell_width(grid: ValueGrid, room: int) -> int:
-    return max(1, min(WIDEST_CELL, (room - 2) // grid.shape[1]))
-
-
-def _grid_rows(grid: ValueGrid, width: int, rows: int) -> tuple[int, int]:
-    """Rows of the title, and of a cell ``width`` columns wide."""
-    top = int(rows >= grid.shape[0] + 3)
-    has_room = rows - top >= 2 * grid.shape[0] + 2
-    return top, 2 if has_room and width >= NARROWEST_CELL_WITH_VALUE else 1
+def _cell_size(grid: ValueGrid, room: int, rows: int) -> tuple[int, int, int]:
+    """Rows of the title, and rows and columns of a cell."""
+    top, width = int(rows >= grid.shape[0] + 3), (room - 2) // grid.shape[1]
+    height = (rows - top - 2) // grid.shape[0]
+    if grid.all_values is not None and height >= ALL_MOVES_CELL[0] and width >= ALL_MOVES_CELL[1]:
+        return top, *ALL_MOVES_CELL
+    width = max(1, min(WIDEST_CELL, width))
+    return top, 2 if height >= 2 and width >= NARROWEST_CELL_WITH_VALUE else 1, width
 
 
 def _draw_grid(frame: Frame, grid: ValueGrid, left: int, room: int, rows: int, encoder: Encoder) -> int:
     """Returns the columns that it takes."""
     is_ascii = ord(encoder.symbols.field_arrows[0]) < 128
     grid_rows, grid_columns = grid.shape
-    width = _cell_width(grid, room)
-    top, height = _grid_rows(grid, width, rows)
+    top, height, width = _cell_size(grid, room, rows)
     if top:
         write_text(frame, 0, left, grid.title[:room], Role.TEXT)
     across, down, corners = ("-", "|", "++++") if is_ascii else ("─", "│", "┌┐└┘")
@@ -149,6 +153,11 @@ def _draw_cell(
         return
     glyph, role = _cell_glyph(grid, cell, encoder, is_ascii)
     ends = sign in (TARGET_SIGN, SMALL_TARGET_SIGN)
+    if (height, width) == ALL_MOVES_CELL and grid.all_values is not None:
+        write_text(frame, top + 1, left + width // 2, glyph, role)
+        if not ends:
+            _write_moves(frame, grid, grid.all_values[cell], cell, at)
+        return
     in_one_row = height == 1 and width >= NARROWEST_CELL_IN_ONE_ROW and not ends
     write_text(frame, top, left if in_one_row else left + width // 2, glyph, role)
     if (height > 1 or in_one_row) and not ends:
@@ -157,6 +166,25 @@ def _draw_cell(
         role = Role.HIT if cell == grid.changed else Role.TARGET if cell in grid.path else Role.WALL
         at_column = left + 1 if in_one_row else left + (width - len(text) + 1) // 2
         write_text(frame, top + height - 1, at_column, text, role)
+
+
+def _write_moves(
+    frame: Frame, grid: ValueGrid, values: FloatArray, cell: tuple[int, int], at: tuple[int, int]
+) -> None:
+    """The value of each move on its side of a cell; that of the best one in the cell's colour."""
+    (top, left), width = at, ALL_MOVES_CELL[1]
+    room = width // 2 - 2
+    texts = [value_text(float(each), room) for each in values]
+    right, up, middle, down = (
+        left + width - len(texts[0]),
+        left + (width - len(texts[1])) // 2,
+        left + 1,
+        left + (width - len(texts[3])) // 2,
+    )
+    best = Role.HIT if cell == grid.changed else Role.TARGET if cell in grid.path else Role.TEXT
+    for move, place in enumerate(((top + 1, right), (top, up), (top + 1, middle), (top + 2, down))):
+        role = best if move == int(grid.moves[cell]) else Role.WALL
+        write_text(frame, *place, texts[move], role)
 
 
 def _cell_glyph(grid: ValueGrid, cell: tuple[int, int], encoder: Encoder, is_ascii: bool) -> tuple[str, Role]:

@@ -39,10 +39,21 @@ def test_cells_of_one_row_keep_the_values_where_they_fit() -> None:
     assert narrow[2] == "| >  @  G |"
 
 
+def test_a_large_cell_has_the_value_of_each_move_on_its_side() -> None:
+    known = np.full((2, 3, 4), np.nan)
+    known[0, 0] = 0.81, 0.2, -0.3, 0.0
+    grid = replace(GRID, all_values=known)
+    shown = draw_value_grids([grid], 50, 9, AsciiEncoder()).rows()
+    assert [each[1:14].split() for each in shown[2:5]] == [["0.20"], ["-.30", ">", "0.81"], ["0"]]
+    assert value_grids_width([grid], 50, 9) == 3 * 13 + 2
+    for columns, rows in ((40, 9), (50, 8)):
+        assert "0.20" not in "".join(draw_value_grids([grid], columns, rows, AsciiEncoder()).rows())
+
+
 def test_two_grids_stand_beside_each_other() -> None:
     frame = draw_value_grids([GRID, GRID], 30, 7, BrailleEncoder())
     assert frame.rows()[0].split() == ["one", "one"]
-    assert value_grids_width([GRID, GRID], 30) == 30
+    assert value_grids_width([GRID, GRID], 30, 20) == 30
     assert max(map(len, frame.rows())) == 30
     assert "→" in frame.rows()[2]
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from kit.learning.grid.grid_learner import GridLearner
-from kit.learning.grid.grid_world import CLIFF, GridCell
+from kit.learning.grid.grid_world import CLIFF, MOVE_NAMES, GridCell
 from kit.learning.grid.registry import make_grid_learner
 from kit.plain_text import counted, wrap
 from kit.render.curve import Axes, Curve, draw_curves
@@ -23,9 +24,9 @@ PACE_EXPONENT: Final = 3.0
 MIN_CURVE_COLUMNS: Final = 24
 VALUE_COLUMNS: Final = 10
 """Of a curve's mark and its newest value, beside its name."""
-MAX_CURVE_COLUMNS: Final = 60
+MAX_CURVE_COLUMNS: Final = 92
 MIN_CURVE_ROWS: Final = 7
-MAX_CURVE_ROWS: Final = 14
+MAX_CURVE_ROWS: Final = 20
 UPDATE_ROWS: Final = 3
 """Rows for the last update in words, in a narrow and high picture."""
 PLAIN_SHARES: Final = (0.15, 0.4, 1.0)
@@ -84,16 +85,27 @@ class LearningPlayback:
 
     def frame(self, columns: int, rows: int, encoder: Encoder) -> Frame:
         """The tables as they are now, the returns beside them where there is room, and the last update below."""
-        grids = [self._grid(number) for number in range(len(self._learners))]
-        frame = Frame.empty(columns, rows)
-        used, high = value_grids_width(grids, columns), value_grids_height(grids, columns, rows - 1)
-        paste_frame(frame, draw_value_grids(grids, columns, rows - 1, encoder), 0, 0)
-        curves = self._curves()
+        grids, curves = [self._grid(number) for number in range(len(self._learners))], self._curves()
         names = sum(len(each.name) + VALUE_COLUMNS for each in curves)
-        if columns - used > max(MIN_CURVE_COLUMNS, names) and rows > MIN_CURVE_ROWS:
+
+        def sizes() -> tuple[int, int, bool, bool]:
+            """Columns and rows of the tables, and whether there is room for curves beside and below them."""
+            used, high = (
+                measure(grids, columns, rows - 1) for measure in (value_grids_width, value_grids_height)
+            )
+            is_beside = columns - used > max(MIN_CURVE_COLUMNS, names) and rows > MIN_CURVE_ROWS
+            return used, high, is_beside, rows - high > MIN_CURVE_ROWS + UPDATE_ROWS
+
+        used, high, is_beside, is_below = sizes()
+        if not is_beside and not is_below:  # the curves come before the values of all moves
+            grids = [replace(grid, all_values=None) for grid in grids]
+            used, high, is_beside, is_below = sizes()
+        frame = Frame.empty(columns, rows)
+        paste_frame(frame, draw_value_grids(grids, columns, rows - 1, encoder), 0, 0)
+        if is_beside:
             self._add_curves(frame, (0, used + 2), (rows - 1, columns - used - 2), encoder)
             write_text(frame, rows - 1, 0, self.update_text(columns))
-        elif rows - high > MIN_CURVE_ROWS + UPDATE_ROWS:
+        elif is_below:
             # Always as many rows, so that nothing below them moves.
             lines = wrap(self.update_text(UPDATE_ROWS * columns), columns)[:UPDATE_ROWS]
             for number, line in enumerate(lines):
@@ -134,9 +146,11 @@ class LearningPlayback:
         learner = self._learners[number]
         world = learner.world
         values, moves = np.full(world.shape, np.nan), np.full(world.shape, -1, dtype=np.int64)
+        all_values = np.full((*world.shape, len(MOVE_NAMES)), np.nan)
         for cell in world.cells():
             if learner.values[cell].any():
                 values[cell] = learner.values[cell].max()
+                all_values[cell] = learner.values[cell]
             if (move := learner.greedy_move(cell)) is not None:
                 moves[cell] = move
         update = learner.last_update
@@ -154,6 +168,7 @@ class LearningPlayback:
             heading=0 if update is None else update.move,
             path=frozenset(learner.greedy_path()) if learner.is_solved else frozenset(),
             changed=None if update is None or self.is_over else update.cell,
+            all_values=all_values,
         )
 
     def _curves(self) -> list[Curve]:

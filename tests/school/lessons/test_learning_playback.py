@@ -99,3 +99,12 @@ def test_the_last_update_is_told_whole_where_the_picture_is_narrow_and_high() ->
         playback.step()
     shown = " ".join(" ".join(playback.frame(38, 30, AsciiEncoder()).rows()).split())
     assert " ".join(playback.update_text(200).split()) in shown
+
+
+def test_the_values_of_all_moves_are_shown_where_the_curve_has_room_too() -> None:
+    playback = LearningPlayback(SCENE)
+    playback.finish()
+    shown = {size: "\n".join(playback.frame(*size, AsciiEncoder()).rows()) for size in ((118, 46), (118, 14))}
+    assert all(" 10 episodes" in each for each in shown.values())
+    large, small = (each.count(" 0 ") for each in shown.values())  # what the moves to the left are worth
+    assert large > small
