@@ -29,7 +29,7 @@ AFTERWARDS: Final = (
     ),
     (
         ToneText("where it drives", Tone.BOLD),
-        "Drive: c lets it drive. Levels: a races it. League: e enters it.",
+        "Drive: c lets it drive. Game: a races it. League: e enters it.",
     ),
 )
 """What can be done with a training, for whoever has none yet."""
