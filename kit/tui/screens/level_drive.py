@@ -331,6 +331,9 @@ class LevelDrive(WatchScreen):
         distance = view.metrics.target_m
         if self._level.conditions.fog and distance is not None and distance > SIGHT:
             view = replace(view, metrics=replace(view.metrics, target_m=None))
+        if self._race_program is None:  # a player knows no node that turns keys into speeds
+            named = (each._replace(name="robot") for each in view.messages)
+            view = replace(view, messages=tuple(named))
         super()._view_arrived(view)
 
     def _newest_scene(self) -> Scene:

@@ -284,3 +284,18 @@ def test_where_no_editor_is_named_the_kits_own_opens_and_what_is_saved_drives(
             ),
             scene,
         )
+
+
+@pytest.mark.long
+def test_by_hand_it_is_the_robot_that_tells_of_walls(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "front")
+        await pilot.press("z", "s")
+        await seen(pilot, "robot: Wall near")
+        assert "teleop: " not in text(pilot)
+
+    with ProgressJournal(workspace.folder) as journal:
+        level = find_level("first-drive")
+        stage(lambda theme: LevelDrive(theme, level, [], journal, workspace), scene)
