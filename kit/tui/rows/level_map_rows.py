@@ -91,7 +91,9 @@ def map_rows(
     for each in standings:
         place = by_level[each.level.id]
         medal = MEDAL_SIGNS[each.best_medal] if each.best_medal else " "
-        title = f"{medal} {each.level.title}" if each.is_open else f"({each.level.title})"
+        title = (
+            f"{medal} {each.level.title}" if each.is_open else f"({each.level.title[: place.columns - 2]})"
+        )
         style = "key" if each.level.id == chosen else "" if each.is_open else "dim"
         _write_signs(
             signs,

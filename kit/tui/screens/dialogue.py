@@ -23,6 +23,7 @@ from kit.tui.loop_calls import called_in_loop
 from kit.tui.rows.key_rows import FOOTER_ROWS, footer
 from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.screens.dialogs import HelpDialog
+from kit.tui.screens.glossary import open_glossary
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import page_screen
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
@@ -381,8 +382,12 @@ class DialogueScreen(RowsScreen[None]):
         return True
 
     def action_press(self, key: str) -> None:
-        """Does what a key of the dialogue means."""
-        self._perform(self.turn.press(key))
+        """Does what a key of the dialogue means. The glossary is not a page of it here, but the screen that it is everywhere."""
+        found = self.turn.find(key)
+        if found is not None and found[0].id == "glossary":
+            open_glossary(self.app)
+        else:
+            self._perform(self.turn.press(key))
 
     def action_scroll(self, lines: int) -> None:
         self._top += lines

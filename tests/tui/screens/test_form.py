@@ -16,6 +16,7 @@ from kit.school.progress import EventKind, ProgressJournal
 from kit.school.survey import AnswerShape, AnswerValue, SurveyPhase
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
+from kit.tui.screens.glossary import GlossaryScreen
 from kit.tui.widgets.text_field import AnswerField
 from tests.cases import every_case
 from tests.tui.lesson_stage import rows, stage, text, until
@@ -262,3 +263,13 @@ def test_pasted_lines_become_one_and_nothing_else_of_a_text_changes(tmp_path: Pa
 
     kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")
     assert value(kept, "driving_words", SurveyPhase.AFTER) == "two lines,  so"
+
+
+def test_the_glossary_is_the_screen_that_it_is_everywhere(tmp_path: Path) -> None:
+    async def act(pilot: Pilot[None], session: FormSession) -> None:
+        await pilot.press("comma")
+        await until(pilot, lambda: isinstance(pilot.app.screen, GlossaryScreen), "the glossary")
+        await pilot.press("escape")
+        await until(pilot, lambda: isinstance(pilot.app.screen, DialogueScreen), "the form again")
+
+    play(tmp_path, act)
