@@ -91,15 +91,13 @@ def map_rows(
     for each in standings:
         place = by_level[each.level.id]
         medal = MEDAL_SIGNS[each.best_medal] if each.best_medal else " "
-        title = (
-            f"{medal} {each.level.title}" if each.is_open else f"({each.level.title[: place.columns - 2]})"
-        )
+        title = f"{medal} {each.level.title}" if each.is_open else f"({each.level.title})"
         style = "key" if each.level.id == chosen else "" if each.is_open else "dim"
         _write_signs(
             signs,
             place.x,
             place.y,
-            title[: place.columns].ljust(place.columns),
+            title[: place.columns + 1].ljust(place.columns),  # its bracket may stand in the gap
             style,
         )
         style = "warn" if each.best_medal >= Medal.GOLD else "" if each.is_open else "dim"

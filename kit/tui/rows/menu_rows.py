@@ -43,7 +43,7 @@ MENU: Final = (
     MenuItem("next_lesson", "Next lesson", "The first step that is not done yet.", "continue learn"),
     MenuItem("lessons", "Lessons", "In order: predict, run, explain, change, make.", "course exercises"),
     MenuItem("drive", "Drive", "Any map and any program, your own too.", "play simulate controller"),
-    MenuItem("levels", "Game", "Levels and puzzles, by hand, program or agent.", "levels medals"),
+    MenuItem("levels", "Game", "Levels and puzzles, by hand, program or agent.", "levels medals race"),
     MenuItem(
         "train", "Train", "Train an agent to drive, and watch it learn.", "trainings learning runs sweeps"
     ),

@@ -113,7 +113,7 @@ def test_where_pictures_have_no_room_the_titles_alone_are_a_map(world: str, heig
         text = [row_text(each) for each in map_rows(standings, places, {}, "")]
         assert len(text) <= height
         for each in standings:
-            assert f"{each.level.title}" in "".join(text)
+            assert (each.level.title if each.is_open else f"({each.level.title})") in "".join(text)
     elif not places:
         assert max(Counter(place.x for place in map_places(standings, WIDTH, 40)).values()) > height
 

@@ -40,7 +40,7 @@ def test_a_wide_panel_says_what_every_line_opens_and_shows_the_next_level(room: 
     assert all(row_width(each) <= WIDE_PANEL - FRAME for each in rows)
     text = " ".join(" ".join(row_text(each).split()) for each in rows)
     is_high = room > 40
-    assert ("drive for medals" in text) == is_high
+    assert ("program or agent" in text) == is_high
     assert ("PICTURE" in text) == is_high
     assert (level.title in text) == is_high
 

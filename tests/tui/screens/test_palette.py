@@ -207,7 +207,7 @@ def test_below_another_first_screen_it_finds_the_same_places_and_asks_before_a_d
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "front")
         drive = pilot.app.screen
-        await pilot.press("w")
+        await pilot.press("w", "p")  # or its time would run out behind the palette
         await choose(pilot, "map warehouse")
         await seen(pilot, "The drive is not over")
         await pilot.press("enter")
