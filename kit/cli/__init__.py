@@ -92,6 +92,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
 ELSEWHERE: Final = {
     "learn": "a lesson is `kit lesson`, a training `kit train`.",
     "levels": "they are in `kit game`.",
+    "play": "a map is driven by `kit drive`, a level by `kit game play LEVEL`.",
     "race": "it is `kit game race`.",
     "daily": "it is `kit game daily`.",
     "tag": "it is `kit game host LEVEL` and `kit game guest`.",

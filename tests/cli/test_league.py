@@ -20,7 +20,8 @@ def test_programs_enter_are_listed_and_withdraw(tmp_path: Path) -> None:
     listed = result_of(tmp_path, "--plain").output
     assert "laser" in listed
     assert "still to be run" in listed
-    assert "No match" in result_of(tmp_path, "matches").output
+    assert "(house)" in result_of(tmp_path, "matches").output  # which has met itself
+    assert "No match" in result_of(tmp_path, "matches", "laser").output
     assert result_of(tmp_path, "withdraw", "stops").exit_code == 0
     assert "stops" not in result_of(tmp_path, "--plain").output
 
@@ -38,7 +39,7 @@ def test_a_mistake_is_told_in_a_sentence(tmp_path: Path) -> None:
         ("submit", "--agent", "nobody"),
         ("withdraw", "nobody"),
         ("matches", "nobody"),
-        ("replay", "1"),
+        ("replay", "999"),
         ("--folder", str(tmp_path / "nowhere"), "--plain"),
         ("new", str(tmp_path / "class"), "--race", "nowhere"),
         ("new", str(tmp_path / "class"), "--tag", "crossing"),
