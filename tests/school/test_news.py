@@ -23,6 +23,7 @@ def test_a_line_is_told_once_and_the_next_update_tells_its_own(
     with ProgressJournal(tmp_path) as journal:
         for screen, (_, line) in NEWS.items():
             assert take_news(journal, screen) == f"New: {line}"
+            assert len(f" New: {line}") < 80
             assert take_news(journal, screen) == ""
     with ProgressJournal(tmp_path) as journal:  # nor after a restart
         assert {take_news(journal, screen) for screen in NEWS} == {""}
