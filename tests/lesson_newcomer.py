@@ -476,7 +476,7 @@ class ScreenNewcomer(Newcomer):
                 f"question {number}",
             )
             self._answer(items)
-        self.wait(lambda: "How sure you were" in self.user.text, "the results")
+        self.wait(lambda: "How sure, and how often" in self.user.text, "the results")
         self.press("back")
         assert self._see_what_follows() == following
         if following:
@@ -593,7 +593,7 @@ class LineNewcomer(Newcomer):
             item = asked_item(items, as_a_shell_reads(said))
             assert "How sure are you?" in self.type(number_of_option(item, said.splitlines()))
             said = self.type("4")
-        assert "How sure you were" in said
+        assert "How sure, and how often" in said
         self.user.send(b"q\n")
         assert self.user.wait() == 0
 

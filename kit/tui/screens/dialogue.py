@@ -383,11 +383,12 @@ class DialogueScreen(RowsScreen[None]):
 
     def action_press(self, key: str) -> None:
         """Does what a key of the dialogue means. The glossary is not a page of it here, but the screen that it is everywhere."""
-        found = self.turn.find(key)
-        if found is not None and found[0].id == "glossary":
+        found, effect = self.turn.find(key), self.turn.press(key)
+        if found is not None and found[0].id == "glossary" and isinstance(effect, Tell):
+            self.show_all()
             open_glossary(self.app)
         else:
-            self._perform(self.turn.press(key))
+            self._perform(effect)
 
     def action_scroll(self, lines: int) -> None:
         self._top += lines

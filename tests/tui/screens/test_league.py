@@ -37,7 +37,10 @@ def test_an_empty_league_says_how_to_enter_and_a_program_enters_by_a_key(tmp_pat
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Nobody is entered")
         assert "kit league" not in text(pilot), "keys do it here"
-        await pilot.press("enter", "down")  # nothing to open or choose
+        await pilot.press("enter")
+        await seen(pilot, "Matches of quick (house)")
+        await pilot.press("escape")
+        await seen(pilot, "Nobody is entered")
         await pilot.press("e")
         await seen(pilot, "Which of yours enters")
         await pilot.press("enter")
