@@ -53,7 +53,7 @@ def how_it_ended(finishes: Sequence[RaceFinish], counts: int, *, was_watched: bo
     """How a drive ended; of a program's drives first the one from the level's own start, which may have been watched, then
     which of them counts and why."""
     said = finish_sentence(finishes[counts])
-    if len(finishes) == 1:
+    if len(finishes) == 1 or all(each.failure is not None for each in finishes):
         return [said]
     first = finish_sentence(finishes[0])
     if said == first:

@@ -8,6 +8,7 @@ from itertools import product
 
 import pytest
 
+from kit.host.failure import Failure, FailureKind
 from kit.school.game.levels import all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import GameSummary, LevelProgress, level_progress
@@ -172,5 +173,7 @@ def test_of_a_program_first_the_drive_that_was_watched_is_told_and_then_the_one_
     assert "tart 4 " in counts
     (both,) = how_it_ended([late, arrived, arrived, lost, lost], 0)
     assert both.startswith(finish_sentence(late))
+    failed = replace(lost, failure=Failure(FailureKind.SYNTAX, "Oops", "a.py", 2))
+    assert how_it_ended([failed] * 5, 2) == [finish_sentence(failed)]
     (both,) = how_it_ended([lost, arrived, lost, late, lost], 2)
     assert both.startswith(finish_sentence(lost))
