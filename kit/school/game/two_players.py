@@ -44,8 +44,8 @@ STILL_DISTANCE: Final = 0.3
 CATCH_DISTANCE: Final = 0.1
 """Who becomes the catcher catches nobody before it has moved so far [m]: else whoever stands beside it would be caught."""
 TAG_RULE: Final = (
-    "Each second is a second of penalty for the catcher; for the one that is chased instead, if only that one has stayed on "
-    f"one spot for {STILL_SECONDS:.0f} s. The lower penalty after {TAG_SECONDS:.0f} s wins."
+    "The catcher gets 1 s of penalty each second. If only the other robot has stayed on one spot for "
+    f"{STILL_SECONDS:.0f} s, that one gets it instead. After {TAG_SECONDS:.0f} s the lower penalty wins."
 )
 
 

@@ -653,10 +653,6 @@ class LessonScreen(DialogueScreen, DriveScreen):
         )
         self._rows("keys").show([keys if self._is_writing else self._keys()])
 
-    def on_unmount(self) -> None:
-        if self._editor is not None:
-            self._editor.keep_draft()
-
     def _run_command(self, request: RunCommand) -> str | None:
         self._hold_scene(True)
         printed = run_aside(

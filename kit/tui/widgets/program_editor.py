@@ -328,6 +328,7 @@ class ProgramEditor(Vertical):
         self.go_to_line(self._first_line)
 
     def on_unmount(self) -> None:
+        self.keep_draft()  # however the kit is left
         self._program.close()
 
     def open(self, file: Path) -> None:

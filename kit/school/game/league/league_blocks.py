@@ -48,7 +48,8 @@ def summary_blocks(standings: Standings, words: LeagueWords = COMMANDS) -> list[
     if not own or len(standings.places) < 2:
         alone = "Nobody is" if not own else f"{own[0].entry.name} alone is"
         has_house = standings.programme.has_house
-        blocks.append(Text(f"{alone} entered{'.' if has_house else ': a league needs two.'}"))
+        others = " but the programs of the house." if has_house and not own else "."
+        blocks.append(Text(f"{alone} entered{others if has_house else ': a league needs two.'}"))
         blocks += rules_blocks(standings.programme, words)
     elif standings.unread:
         read = standings.jobs - standings.unread

@@ -1,0 +1,29 @@
+"""The kit's editor in place of the whole screen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from textual.pilot import Pilot
+
+from kit.tui.screens.file_editor import FileEditorScreen
+from kit.tui.widgets.program_editor import ProgramFile
+from tests.tui.lesson_stage import seen, stage
+
+
+def test_what_is_not_saved_when_the_kit_is_left_is_there_the_next_time(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("speed = 1\n")
+
+    async def type_and_end(pilot: Pilot[None]) -> None:
+        await seen(pilot, "speed = 1")
+        await pilot.press(*"fast")
+        pilot.app.exit()
+
+    async def look(pilot: Pilot[None]) -> None:
+        await seen(pilot, "fastspeed = 1")
+        await seen(pilot, "not saved")
+
+    stage(lambda theme: FileEditorScreen(ProgramFile(file), 1, ""), type_and_end)
+    assert file.read_text() == "speed = 1\n"
+    stage(lambda theme: FileEditorScreen(ProgramFile(file), 1, ""), look)
