@@ -46,14 +46,20 @@ async def open_palette(app: KitApp, switch_theme: Callable[[str], None]) -> None
         screen = next(each for each in reversed(app.screen_stack) if each is not screen)
     if isinstance(screen, Dialog):
         return
-    commands = [*_screen_commands(screen), *_theme_commands(app, switch_theme), *_mouse_commands(app)]
-    picker = Picker("Commands", _command_items(commands))
+    own = [*_screen_commands(screen)]
+    commands = [*own, *_theme_commands(app, switch_theme), *_mouse_commands(app)]
+    settings = range(len(own), len(commands))
+    picker = Picker("Commands", _command_items(own))
+    picker.reads_more = True
     choice = create_task(app.push_screen_wait(picker))
     start = _start_screen(app)
     try:
         if start is not None:  # which may have to read them first
             commands += await start.palette_commands()
-            picker.replace_choices(_command_items(commands))
+        items = _command_items(commands)  # the settings last
+        places = items[settings.stop :]
+        picker.reads_more = False
+        picker.replace_choices([*items[: settings.start], *places, *(items[each] for each in settings)])
         chosen = None if (number := await choice) is None else commands[int(number)]
         if chosen is not None and (not chosen.is_place or await _may_leave(app)):
             await chosen.run()

@@ -29,6 +29,7 @@ ROWS_AROUND: Final = 3
 """Rows of these alone."""
 CHOOSING: Final = "arrows choose, Enter confirm, Esc back"
 NOTHING_FOUND: Final = "Nothing here has these words."
+READING: Final = "Reading what else there is ..."
 WAY_ON: Final = "Backspace takes letters back; fewer of them may find it."
 DELETING: Final = "Backspace delete, Esc back"
 COLUMNS_AROUND: Final = 7
@@ -118,6 +119,8 @@ class Picker(Dialog[str | None]):
         """Number of the line that is marked as the chosen one."""
         self._is_entered = False
         """Whether Enter was pressed where nothing matched: what is still to come may match."""
+        self.reads_more = False
+        """Whether more choices are to follow."""
         self.replace_choices(choices)
 
     def compose(self) -> ComposeResult:
@@ -203,7 +206,8 @@ class Picker(Dialog[str | None]):
         )
         self._shown, self._marked = shown, at
         if not shown:
-            options.add_option(Option(Text(f"{NOTHING_FOUND}\n{WAY_ON}"), disabled=True))
+            said = READING if self.reads_more else f"{NOTHING_FOUND}\n{WAY_ON}"
+            options.add_option(Option(Text(said), disabled=True))
         self.query_one(Vertical).border_subtitle = CHOOSING if shown else DELETING
         if not wanted:  # a filter leaves the list as high as it is, so that it does not move
             rows = sum(

@@ -7,6 +7,7 @@ import asyncio
 import pytest
 from textual.app import App
 from textual.pilot import Pilot
+from textual.screen import Screen
 
 from kit.tui.screens.picker import LIST_WIDTH, NOTHING_FOUND, WAY_ON, Picker, PickerItem
 from tests.tui.lesson_stage import rows, stage, text
@@ -168,3 +169,19 @@ def test_on_80_columns_one_long_name_takes_no_columns_from_the_texts_of_the_othe
     line = asyncio.run(run())
     gap = line.index("its text") - line.index("short")
     assert (gap <= 18) is is_narrow
+
+
+def test_while_more_is_read_nothing_is_said_to_be_missing() -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        picker = Picker("Things", CHOICES)
+        picker.reads_more = True
+        pilot.app.push_screen(picker)
+        await pilot.pause()
+        await pilot.press(*"delta")
+        assert NOTHING_FOUND not in text(pilot)
+        picker.reads_more = False
+        picker.replace_choices(CHOICES)
+        await pilot.pause()
+        assert NOTHING_FOUND in text(pilot)
+
+    stage(lambda theme: Screen(), scene)
