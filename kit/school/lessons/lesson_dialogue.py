@@ -837,7 +837,9 @@ class LessonDialogue(Dialogue):
         ),
         DialogueAction(ACTIONS["check"], check, can_check),
         DialogueAction(ACTIONS["edit_file"], edit, can_edit),
-        DialogueAction(ACTIONS["editor"], edit_here, can_edit, is_for_lines=False, while_busy=True),
+        DialogueAction(
+            ACTIONS["editor"], edit_here, can_edit, word=lambda dialogue: "write", is_for_lines=False, while_busy=True
+        ),
         DialogueAction(ACTIONS["hint"], hint, can_hint),
         DialogueAction(ACTIONS["drive"], drive, can_drive),
         DialogueAction(ACTIONS["replay"], replay, can_replay),

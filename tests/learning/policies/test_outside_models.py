@@ -299,7 +299,7 @@ def test_a_script_races_and_exports_what_was_trained_elsewhere(origin: str, tmp_
     runner = CliRunner()
     raced = runner.invoke(main, ["game", "race", "turn", "--agent", mine])
     assert raced.exit_code == 0, raced.output
-    assert "finished" in raced.output
+    assert "from the next target" in raced.output
     words = ["evaluate", mine, "--package", "from_outside", "--dest", str(tmp_path)]
     made = runner.invoke(main, words)
     assert made.exit_code == 0, made.output

@@ -122,7 +122,7 @@ def test_the_verb_races_a_task_and_speaks_of_no_medal(own_task: Path, tmp_path: 
     file.write_text(driving_program(0.4))
     result = CliRunner().invoke(main, ["game", "race", "dash", "--controller", str(file)])
     assert result.exit_code == 0, result.output
-    assert "finished after" in result.output
+    assert "Finished after" in result.output
     assert "medal" not in result.output
     result = CliRunner().invoke(main, ["game", "race", "dash", "--agent", "nobody"])
     assert result.exit_code == 2

@@ -735,7 +735,7 @@ def test_who_writes_in_the_editor_sees_task_and_verdict(student: Student, size: 
         await pilot.press("ctrl+z", "ctrl+z")
         assert "not saved" in text(pilot)
         await pilot.press("ctrl+e")
-        await seen(pilot, "^E editor")
+        await seen(pilot, "^E write")
         await pilot.press("ctrl+e")
         await seen(pilot, "as you left it, not saved")
 
@@ -836,7 +836,7 @@ def test_what_was_typed_can_be_undone_after_the_file_was_read_again_and_the_edit
         await pilot.press("ctrl+y")
         assert editor.area.text == "colour: blue\n"
         await pilot.press("ctrl+e")
-        await seen(pilot, "^E editor")
+        await seen(pilot, "^E write")
         await pilot.press("ctrl+e")
         await seen(pilot, "^S save and check")
         await pilot.press(*["ctrl+z"] * 5)
@@ -876,7 +876,7 @@ def test_without_an_easy_editor_e_opens_the_kits_own(
     async def scene(pilot: Pilot[None]) -> None:
         await opened_editor(pilot, "e")
         await pilot.press("escape")
-        await seen(pilot, "^E editor")
+        await seen(pilot, "^E write")
         await pilot.press("n")
         assert f"step {CORNER} of 5" in rows(pilot)[0]
         assert not editor_of(pilot).display, "it was another exercise's file"

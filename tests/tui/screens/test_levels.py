@@ -486,8 +486,8 @@ def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
         assert isinstance(drive, LevelDrive)
         await wait_until_shown(pilot, lambda: drive.view is not None and "first key" in flat(pilot.app))
         assert drive.view is not None
-        assert drive.view.scene.targets == drive._preview.discs
-        (first,) = drive._preview.discs
+        assert drive.view.scene.targets == drive._preview.objective.discs
+        (first,) = drive._preview.objective.discs
         second = first._replace(y=2.5)
         between = []
 
