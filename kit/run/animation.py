@@ -101,7 +101,8 @@ def export_recording(
     """Writes a recording as ``.cast`` (asciicast, version 2), ``.gif`` or ``.svg``, as the file's ending says.
 
     ``scenario``: that of the recording, from ``find_scenario(recording.place, recording.case)``. ``on_frame`` is
-    called after every frame, ``count_frames`` times; ``prepare`` with the session before it begins. The file is written whole or not at all.
+    called after every frame, ``count_frames`` times; ``prepare`` with the session before it begins. The file is written
+    whole or not at all.
 
     Raises ExportError for another ending or too long a run, RecordingError where an input does not fit the world,
     and OSError if the file cannot be written.

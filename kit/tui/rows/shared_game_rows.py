@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
+from kit.document.blocks import Tone, ToneText, labelled_table
+from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, at_both_edges, row, row_width
 from kit.plain_text import counted, wrap
 from kit.school.game.two_players import (
@@ -142,8 +144,8 @@ class RobotMotion:
             ("turning", f"{self.turn_rate:5.2f} rad/s"),
             ("distance", f"{self.driven:5.1f} m"),
         )
-        title = ruled_title(f"robot {self.number + 1}", width)
-        return [title, *(row((f"{name:<8} ", "dim"), figure) for name, figure in figures)]
+        table = labelled_table((ToneText(name, Tone.DIM), figure) for name, figure in figures)
+        return [ruled_title(f"robot {self.number + 1}", width), *rows_of([table], Page(width))]
 
 
 def _name_of(state: SharedGameState, number: int, me: int | None) -> str:

@@ -28,6 +28,7 @@ from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts, load_unfinis
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
+    BELTS,
     BY_HAND,
     DriverFacts,
     ExtraRule,
@@ -82,10 +83,7 @@ NOTES: Final = (
     ),
     (
         "belt",
-        (
-            "of a world: white for a first medal, yellow for one on each level; green, blue: silver on half, on all; brown, black: "
-            "gold likewise"
-        ),
+        (f"of a world: {', '.join(f'{each.name} for {each.task}' for each in BELTS)}"),
     ),
     ("bump", "by hand back to the start, with all targets to be reached again"),
     *level_rows.PROGRAM_NOTES,
