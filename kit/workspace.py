@@ -129,6 +129,7 @@ def is_special(path: Path) -> bool:
 def write_atomically(path: Path, data: bytes, *, follows_links: bool = True) -> None:
     """Writes ``data`` to ``path`` so that a reader, or a kill at any moment, sees the old file or the new one.
 
+    Where the file system has files without a name, as those of Linux have, a kill leaves nothing half-written either.
     A new file has the mode that the user's umask gives, one that is replaced keeps its own. A link stays one: what it
     points to is written. So is a device or a pipe, as it is. Without ``follows_links`` all three are replaced, or it is an
     error: so it must be where another user may have put them, to have a file of this user's overwritten. Raises OSError.
@@ -141,7 +142,7 @@ def write_atomically(path: Path, data: bytes, *, follows_links: bool = True) -> 
         if follows_links:
             path = path.resolve()
         temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
-        handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
+        handle, has_name = _open_new(temporary)
         try:
             with os.fdopen(handle, "wb") as file:
                 if follows_links:
@@ -149,12 +150,25 @@ def write_atomically(path: Path, data: bytes, *, follows_links: bool = True) -> 
                         os.fchmod(handle, stat.S_IMODE(path.stat().st_mode) & 0o777)
                 file.write(data)
                 file.flush()
-                os.fsync(file.fileno())
+                os.fsync(handle)
+                if (
+                    not has_name
+                ):  # the folder's descriptor is not looked at, but has link() follow what /proc points to
+                    os.link(f"/proc/self/fd/{handle}", temporary, src_dir_fd=handle)
             temporary.replace(path)
         except BaseException:  # Ctrl-C too: no half-written file stays; raised again
             with suppress(OSError):
                 temporary.unlink()
             raise
+
+
+def _open_new(path: Path) -> tuple[int, bool]:
+    """Opens a new file for writing, without a name where that can be; and whether it has the name."""
+    flags = os.O_WRONLY | os.O_CLOEXEC
+    if os.access("/proc/self/fd", os.X_OK):
+        with suppress(OSError):  # this file system has none, or it is said of the file with a name
+            return os.open(path.parent, flags | os.O_TMPFILE, 0o666), False
+    return os.open(path, flags | os.O_CREAT | os.O_EXCL, 0o666), True
 
 
 @contextmanager
