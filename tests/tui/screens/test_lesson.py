@@ -77,7 +77,7 @@ def student(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Student
 
 
 class HeldChecks:
-    """Checks whose reports do not come while they are held: what is shown meanwhile does not depend on how long one takes."""
+    """Checks that say nothing while they are held: what is shown meanwhile does not depend on how long one takes."""
 
     def __init__(self) -> None:
         self.is_held = False
@@ -91,7 +91,9 @@ class HeldChecks:
 
 @pytest.fixture
 def checks(monkeypatch: pytest.MonkeyPatch) -> HeldChecks:
-    held, poll = HeldChecks(), checking.ExerciseCheck.poll
+    held, poll, progress = HeldChecks(), checking.ExerciseCheck.poll, vars(checking.ExerciseCheck)["progress"]
+    silent = property(lambda check: "" if held.is_held else progress.fget(check))
+    monkeypatch.setattr(checking.ExerciseCheck, "progress", silent)
     monkeypatch.setattr(checking.ExerciseCheck, "poll", lambda check: None if held.is_held else poll(check))
     return held
 
