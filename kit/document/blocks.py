@@ -31,6 +31,8 @@ class Tone(StrEnum):
     CODE = "code"
     KEY = "press"
     """A key to press."""
+    TITLE = "title"
+    """The name of a screen or of a part of it."""
     CHOSEN = "chosen"
     """The selected entry of a list."""
 

@@ -278,13 +278,13 @@ def _scale_rows(block: RatingScale, page: Page) -> list[Row]:
 
 def _table_rows(table: Table, page: Page) -> Iterator[Row]:
     if table.title:
-        yield from (row(line) for line in wrap(printable_line(table.title), page.width))
+        yield from (row((line, Tone.TITLE)) for line in wrap(printable_line(table.title), page.width))
     placed = table_rows(table, page.width - table.indent)
     indent = row(" " * table.indent) if table.indent else ()
     for each in (*placed.heads, *(each for entry in placed.entries for each in entry)):
         yield (*indent, *each)
     if table.note:
-        yield from (row(line) for line in wrap(printable_line(table.note), page.width))
+        yield from (row((line, Tone.DIM)) for line in wrap(printable_line(table.note), page.width))
 
 
 def text_blocks(lines: Iterable[str]) -> list[Text]:

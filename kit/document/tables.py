@@ -38,9 +38,9 @@ def table_rows(table: Table, width: int) -> TableRows:
     ]
     heads = [column.title for column in table.columns]
     widths = _fitted_widths(table.columns, heads, cells, width)
-    head = list(_placed_rows(heads, widths, table.columns, (Tone.PLAIN,) * len(heads))) if any(heads) else []
+    head = list(_placed_rows(heads, widths, table.columns, (Tone.DIM,) * len(heads))) if any(heads) else []
     if head and table.is_ruled:
-        head.append(row(COLUMN_GAP.join("-" * each for each in widths)))
+        head.append(row((COLUMN_GAP.join("-" * each for each in widths), Tone.DIM)))
     if table.grouped and cells:
         _share_first_cells(table, cells, widths[0])
     entries = (

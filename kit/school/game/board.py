@@ -203,7 +203,7 @@ def grid_rows(
 
 def told_rows(title: str, told: Iterable[tuple[TableCell, ...]], width: int) -> list[Row]:
     """Names below a title, and what is said of each."""
-    return [((title, "dim"),), *rows_of([labelled_table(told, is_tight=True)], Page(width=width, margin=1))]
+    return [((title, "title"),), *rows_of([labelled_table(told, is_tight=True)], Page(width=width, margin=1))]
 
 
 def by_value(values: Mapping[Cell, float], texts: Mapping[Cell, str]) -> dict[Cell, tuple[str, str]]:
@@ -236,7 +236,7 @@ def figure_rows(title: str, grid: Grid, figures: Mapping[Cell, tuple[str, str]])
         return f"{text:>{width}}", style
 
     return [
-        ((title, "dim"),),
+        ((title, "title"),),
         *(
             tuple(_join_by_style(shown((row, column)) for column in range(left, right + 1)))
             for row in range(top, bottom + 1)

@@ -69,7 +69,7 @@ class MovesBoard(Board):
         """The moves so far, ten to a group."""
         groups = [self.moves[at : at + 10] for at in range(0, len(self.moves), 10)]
         lines = wrap(" ".join(groups), width, "  ", "  ")
-        return [row(("moves so far", "dim")), *map(row, lines)] if groups else []
+        return [row(("moves so far", "title")), *map(row, lines)] if groups else []
 
     def undo(self) -> None:
         self.moves = self.moves[:-1]

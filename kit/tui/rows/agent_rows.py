@@ -36,7 +36,7 @@ def agent_panel(
         if math.isfinite(distance)
     ]
     readings += [_reading_row(name.replace("_", " "), value, "") for name, value in view.readings]
-    below = [row(("perceives", "dim")), *readings] if readings else []
+    below = [row(("perceives", "title")), *readings] if readings else []
     expected = _expected_rows(view.expected_returns, width)
     if height - len(head) - 1 - len(below) - len(expected) < min(4, len(view.actions)):
         expected = expected[:1]  # the newest value alone
@@ -49,7 +49,7 @@ def agent_panel(
     bars = [_action_bar(action, view.kind, width) for action in shown]
     if len(shown) < len(view.actions):
         bars.append(row((f" {len(view.actions) - len(shown)} more", "dim")))
-    return (*head, row((_TITLES[view.kind], "dim")), *bars, *below)[:height]
+    return (*head, row((_TITLES[view.kind], "title")), *bars, *below)[:height]
 
 
 def _expected_rows(values: Sequence[float], width: int) -> list[Row]:

@@ -330,7 +330,7 @@ def tries_rows(events: Sequence[ProgressEvent], width: int) -> list[Row]:
     if not checks:
         return []
     note = f", the last {MOST_TRIES}" if len(checks) > MOST_TRIES else ""
-    rows = [row((f"{counted(len(checks), 'check')} so far{note}", "dim"))]
+    rows = [row((f"{counted(len(checks), 'check')} so far{note}", "title"))]
     for each in reversed(checks[-MOST_TRIES:]):
         number = int(each.number("medal") or 0)
         medal = Medal(number) if number in tuple(Medal) else Medal.NONE

@@ -164,7 +164,7 @@ def needed_rows(bins: Sequence[HistogramBin], width: int, unit: str = "s", decim
     if not most:
         return []
     players = sum(each.count for each in bins)
-    rows = [row((f"   what {players} players here needed", "dim"))]
+    rows = [row((f"   what {players} players here needed", "title"))]
     for each in bins:
         start = f"   to {each.high:7.{decimals}f} {unit}  {each.count:3} "
         own = " < you" if each.holds_own else ""

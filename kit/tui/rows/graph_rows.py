@@ -59,7 +59,7 @@ def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, w
         (f"{counted(broken, 'broken line')} " if broken else "", "bad"),
         ("paused" if heard.paused else "", "warn"),
     )
-    return at_both_edges(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
+    return at_both_edges(row((title, "title"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
 
 
 def rates(flow_stats: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:

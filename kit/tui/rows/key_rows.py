@@ -79,6 +79,6 @@ def help_page(
             rows.append(row())
         for key, text in block:
             first, *others = wrap(text, TEXT_WIDTH)
-            rows.append(row((f" {key:<{KEY_WIDTH}}", "bold"), first))
+            rows.append(row((f" {key:<{KEY_WIDTH}}", "title"), first))
             rows += [row(" " * (KEY_WIDTH + 1), each) for each in others]
     return tuple(rows)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import groupby
 from typing import Final
 
 from kit.document.rows import Row, row
@@ -34,16 +35,20 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
         return round((width - 1) * (1.0 - min(math.log(max(share, 1.0)) / widest, 1.0)))
 
     places = {medal: min(column(shares[medal]), width - 1 - (medal is not Medal.RECORD)) for medal in RUNGS}
-    signs = ["─"] * width
+    here = -1
+    if seconds is not None and seconds <= medal_time(Medal.BRONZE, reference, driver):
+        missed = [place for medal, place in places.items() if seconds > medal_time(medal, reference, driver)]
+        here = min(  # before a rung that was missed by a hair
+            [column(seconds / reference), *(place - 1 for place in missed)]
+        )
+    shown = [("━", "good") if each < here else ("─", "dim") for each in range(width)]
     for medal, place in places.items():
-        signs[place] = MEDAL_SIGNS[medal]
-    if seconds is None or seconds > medal_time(Medal.BRONZE, reference, driver):
-        return row(("".join(signs), "dim"))
-    here = column(seconds / reference)
-    missed = [place for medal, place in places.items() if seconds > medal_time(medal, reference, driver)]
-    here = min([here, *(place - 1 for place in missed)])  # before a rung that was missed by a hair
-    passed = "".join("━" if sign == "─" else sign for sign in signs[:here])
-    return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
+        shown[place] = (MEDAL_SIGNS[medal], MEDAL_STYLES[medal])
+    if here >= 0:
+        shown[here] = (HERE, "bold")
+    return tuple(
+        ("".join(sign for sign, _ in run), style) for style, run in groupby(shown, key=lambda each: each[1])
+    )
 
 
 def ladder_letters() -> Row:
@@ -53,7 +58,9 @@ def ladder_letters() -> Row:
     >>> row_text(ladder_letters())
     ' ladder  B bronze  S silver  G gold  M master  R record'
     """
-    return row((" ladder  " + "  ".join(f"{MEDAL_SIGNS[each]} {each.title}" for each in RUNGS), "dim"))
+    parts = ((MEDAL_SIGNS[each], MEDAL_STYLES[each], each.title) for each in RUNGS)
+    told = (part for sign, style, title in parts for part in ((f"  {sign} ", style), title))
+    return row((" ladder", "dim"), *told)
 
 
 def ladder_words(driver: DriverKind, reference: float, seconds: float | None) -> str:
@@ -118,7 +125,7 @@ def ladder_of_drive(
     seconds = finish.seconds if finish.reached else None
     if is_tall:
         rungs = [row("   ", *each) for each in rung_rows(driver, reference, seconds)]
-        rows = [row((f"   ladder {driver.phrase}", "dim")), *rungs]
+        rows = [row((f"   ladder {driver.phrase}", "title")), *rungs]
     else:
         rows = ladder_rows(driver, reference, seconds)
     unharmed = medal_of(replace(finish, collisions=0, is_apart=False), reference, driver)

@@ -57,7 +57,7 @@ def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:
         bar = ""
     if len(goal) > room:
         goal = f"{goal[: room - 3].rstrip()}..." if room >= LEAST_GOAL else ""
-    left = row((title, "bold"), "  ", (goal, "dim")) if goal else row((title, "bold"))
+    left = row((title, "title"), "  ", (goal, "dim")) if goal else row((title, "title"))
     return at_both_edges(left, row(where, (bar, "bold")), width)
 
 
@@ -72,7 +72,7 @@ def title(step: LessonStep, caption: Row, width: int) -> Row:
     kind = f"{KINDS[step.kind]}: "
     if len(kind) + len(step.title) + 1 + row_width(caption) > width:
         kind = ""
-    return at_both_edges(row((kind, "dim"), (step.title, "bold")), caption, width)
+    return at_both_edges(row((kind, "dim"), (step.title, "title")), caption, width)
 
 
 def checking(seconds: float, progress: str, width: int) -> Row:

@@ -26,7 +26,7 @@ def heading(view: View, pacing: PacingStatus, width: int, driver: str = "") -> R
     """Map and controller on the left; state, speed and time on the right. ``driver``: who drives, where no controller
     does."""
     who = view.controller or driver or "no driver"
-    left = row((view.title, "bold"), "  ", who)
+    left = row((view.title, "title"), "  ", who)
     return at_both_edges(
         left,
         (*_state_row(view, pacing), (f"  {format_clock(view.time_s, 2 if view.paused else 1)}", "bold")),
@@ -85,7 +85,7 @@ def _two_decimals(value: float) -> str:
 
 
 def _title_row(text: str) -> Row:
-    return row((text, "dim"))
+    return row((text, "title"))
 
 
 def _figure_row(name: str, value: str, unit: str) -> Row:

@@ -10,5 +10,5 @@ def ruled_title(name: str, width: int, note: str = "") -> Row:
     text = f" {name} "
     note = f" {note} " if note and len(text) + len(note) + 8 <= width else ""
     rule = "─" * max(0, width - 2 - len(text) - len(note) - (1 if note else 0))
-    shown = row(("──", "dim"), (text, "bold"), (rule, "dim"), (note, "dim"), ("─" if note else "", "dim"))
+    shown = row(("──", "dim"), (text, "title"), (rule, "dim"), (note, "dim"), ("─" if note else "", "dim"))
     return fitted(shown, width)

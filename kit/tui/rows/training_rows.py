@@ -65,7 +65,7 @@ _STATES: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 
 def heading(name: str, status: RunStatus, width: int) -> Row:
     """Returns the heading: on the left the task, on the right the state of the training and its duration."""
-    left = row((name, "bold"), "  ", (status.plan.title, "dim"))
+    left = row((name, "title"), "  ", (status.plan.title, "dim"))
     right = row(_STATES[status.summary.state], "  ", (clock(status.summary.seconds), "bold"))
     return at_both_edges(left, right, width)
 
@@ -225,11 +225,11 @@ def _case_rows(status: RunStatus, width: int, height: int) -> tuple[Row, list[Ro
     if len(cases) < height:
         wide = max(len("case"), *map(len, names))
         bar = max(0, width - wide - 13)
-        title = row((f"{'case':{wide}} {'recent':{bar}} train  test"[:width], "dim"))
+        title = row((f"{'case':{wide}} {'recent':{bar}} train  test"[:width], "title"))
         return title, [_case_row(name.ljust(wide), case, bar) for name, case in cases]
     per_row = max(1, (width + 1) // (NAME + 5))
     tested = any(sum(case.last_evaluation) for case in status.cases)
-    title = row((f"% reached, {'last test' if tested else 'in training'}"[:width], "dim"))
+    title = row((f"% reached, {'last test' if tested else 'in training'}"[:width], "title"))
     cells = [
         _cell(name, case.last_evaluation if tested else case.trained, status.plan.goal)
         for name, case in cases
@@ -275,7 +275,7 @@ def _term_rows(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     """The reward per episode by named term."""
     total = "" if status.reward is None else f" {status.reward:.2f}"
     told = f"reward per episode{total}, {RECENTLY}"
-    title = row((told if len(told) <= width else f"reward{total}, {RECENTLY}"[:width], "dim"))
+    title = row((told if len(told) <= width else f"reward{total}, {RECENTLY}"[:width], "title"))
     per_row = max(1, width // 28)
     cell = width // per_row
     cells = [
@@ -293,7 +293,7 @@ def _measure_rows(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
         for name, number in status.measures.items()
         if name in MEASURES
     ]
-    return row(("the learner, by its last batch"[:width], "dim")), rows
+    return row(("the learner, by its last batch"[:width], "title")), rows
 
 
 # The line of keys, and the last words

@@ -44,7 +44,7 @@ class DefenceScreen(DialogueScreen):
     def _heading(self) -> Row:
         is_running = self.dialogue.is_answered and not self._scene.is_resting
         right = self._scene.caption if is_running else self.dialogue.position
-        return at_both_edges(row((self.dialogue.title, "bold")), row((right, "dim")), self.size.width)
+        return at_both_edges(row((self.dialogue.title, "title")), row((right, "dim")), self.size.width)
 
     def _show_body(self) -> None:
         page = Page(text_width(self.size.width), MARGIN)

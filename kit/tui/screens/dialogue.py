@@ -323,7 +323,7 @@ class DialogueScreen(RowsScreen[None]):
         return self._field is not None and self.focused is self._field
 
     def _heading(self) -> Row:
-        title = row((self.dialogue.title, "bold"))
+        title = row((self.dialogue.title, "title"))
         position = self.dialogue.position
         return at_both_edges(title, row((position, "dim")), self.room.width) if position else title
 

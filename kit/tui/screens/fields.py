@@ -229,18 +229,18 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
     def _panel(self, picture: FieldPicture, poses: Sequence[Pose]) -> list[Row]:
         """Returns at most 20 rows of 22 characters."""
         values = asdict(picture.intensities)
-        rows = [row(("intensities", "dim"))]
+        rows = [row(("intensities", "title"))]
         for number, name in enumerate(self._names):
             chosen = number == self._chosen
             rows.append(
                 row((f"{'>' if chosen else ' '}{name:<8}", "bold" if chosen else ""), f"{values[name]:>9.2f}")
             )
-        rows += [row(("arrows", "dim")), row(f" {self.shown.value}"), row(("traps", "dim"))]
+        rows += [row(("arrows", "title")), row(f" {self.shown.value}"), row(("traps", "title"))]
         rows += [
             row(f" ! {trap.x:6.2f} {trap.y:6.2f} {trap.share:4.0%}") for trap in self._traps[:MOST_TRAPS]
         ] or [row(" none")]
         if poses:
-            rows.append(row(("forces", "dim")))
+            rows.append(row(("forces", "title")))
             decision = picture.decision(poses)
             rows += [
                 row(f" {robot.name[:8]:<8}", (f"{math.hypot(*force):9.1f}", "bold"))
@@ -248,7 +248,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
             ]
         if len(poses) == 2:
             beside = "yes" if adjacency.is_adjacent_by_poses(poses[0], poses[1]) else "no"
-            rows.append(row(("side by side", "dim")))
+            rows.append(row(("side by side", "title")))
             rows.append(
                 row(f" {beside:<8}", (f"{float(adjacency.adjacency_score(poses[0], poses[1])):9.2f}", "bold"))
             )

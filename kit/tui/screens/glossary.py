@@ -98,7 +98,7 @@ class GlossaryScreen(FilteredScreen):
         self._first = self._at // (room * self._columns) * room * self._columns
         where = f"term {self._at + 1} of {len(found)}" if found else ""
         filtered = (f"  with {self.filter_text!r}", "dim") if self.filter_text else ("", "")
-        heading = at_both_edges(row(("Glossary", "bold"), filtered), row((where, "dim")), width)
+        heading = at_both_edges(row(("Glossary", "title"), filtered), row((where, "dim")), width)
         self._rows("heading").show([heading])
         self._rows("list").show(self._list_rows())
         used = self._columns * (self._term_width + AROUND_TERM)

@@ -144,7 +144,7 @@ class KeyTestScreen(RowsScreen[None], DriveScreen):
         if not self.query(TextRows):  # while the kit is left
             return
         width = self.size.width
-        title = row(("Key test", "bold"), ("  press and hold keys", "dim"))
+        title = row(("Key test", "title"), ("  press and hold keys", "dim"))
         self._rows("heading").show([at_both_edges(title, row((self.drive.choice.mode, "bold")), width)])
         self._rows("mode").show([fitted(each, width) for each in self._mode_rows()])
         if self._is_beside:

@@ -219,7 +219,7 @@ class LayersScreen(RowsScreen[None]):
 
     def _heading(self, step: Step) -> Row:
         number = PARTS.index(step.part) + 1
-        left = row((self._title, "bold"), f"  {number}. {step.title}")
+        left = row((self._title, "title"), f"  {number}. {step.title}")
         place = row((f"{self._at + 1} of {len(self._steps)}", "dim"))
         return at_both_edges(left, place, self.size.width)
 

@@ -227,7 +227,7 @@ class LeagueScreen(RowsScreen[None]):
         place = f"{self._league.folder}".replace(str(Path.home()), "~", 1)
         has_room = len(title) + len(place) + 2 <= width
         self._rows("heading").show(
-            [at_both_edges(row((title, "bold")), row((place if has_room else "", "dim")), width)]
+            [at_both_edges(row((title, "title")), row((place if has_room else "", "dim")), width)]
         )
         tables = [] if standings is None else self._tables(standings, *self._room)
         below = [row(), *(row("   ", *each) for each in self._maps)] if self._has_own and self._maps else []

@@ -113,7 +113,7 @@ class LessonsScreen(RowsScreen[None]):
         where = lines_shown(top, len(self._listed), len(lines))
         news = (f"   {self._news}", "good")
         heading = at_both_edges(
-            row(("Lessons", "bold"), (told, "dim"), news), row((where, "dim")), self.size.width
+            row(("Lessons", "title"), (told, "dim"), news), row((where, "dim")), self.size.width
         )
         self._rows("heading").show([heading, row((lesson_list_rows.HEADER, "dim"))])
         self._rows("list").show_all([line for _, line in lines[top : top + room]])

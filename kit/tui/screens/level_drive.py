@@ -400,7 +400,7 @@ class LevelDrive(WatchScreen):
         """The level and its goal, bumps, the difference to the reference where the robot is now, and the clock."""
         referee = self._referee
         width, clock = self.size.width, (format_clock(time_s), "bold")
-        left = [(self._level.title, "bold")]
+        left = [(self._level.title, "title")]
         if self._race_program is not None:
             left.append((f"  {self.agent_name or self._race_program.name} drives", "dim"))
         if referee is None:

@@ -110,7 +110,7 @@ def pictures_of(levels: Sequence[GameLevel], width: int, height: int, glyphs: st
             seconds = reference_seconds(level)
             told = "" if seconds is None else f"  reference {seconds:.2f} s"
             told = told if len(level.title) + len(told) <= columns - PICTURE_GAP else ""
-            shown = [row((level.title, "bold"), (told, "dim")), *picture_rows(picture)]
+            shown = [row((level.title, "title"), (told, "dim")), *picture_rows(picture)]
             line = side_by_side(line, shown, place * columns) if place else shown
         made += [*line, row()]
     return made

@@ -267,7 +267,7 @@ class LevelsScreen(RowsScreen[None]):
         counts, title = f"{level_rows.medal_counts(summary)} ", " Game   "
         daily = self._daily_text(self.size.width - len(counts) - len(title) - 1)
         self._rows("heading").show(
-            [at_both_edges(row((title, "bold"), (daily, "dim")), row((counts, "bold")), self.size.width)]
+            [at_both_edges(row((title, "title"), (daily, "dim")), row((counts, "bold")), self.size.width)]
         )
         challenge = self.chosen_challenge
         self.set_class(challenge is not None, "-challenge")

@@ -240,7 +240,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     def _show(self, note: str = "") -> None:
         width = self.size.width
         sizes = f"  {self.sketch.size[0]:g} m x {self.sketch.size[1]:g} m"
-        heading = row((f"New map {self._name}", "bold"), (sizes, "dim"), (f"  {note}", "warn"))
+        heading = row((f"New map {self._name}", "title"), (sizes, "dim"), (f"  {note}", "warn"))
         self.query_one("#heading", TextRows).show([heading])
         self.query_one("#panel", TextRows).show(self._panel())
         self.query_one("#keys", TextRows).show([footer(self.screen_actions, width)])
@@ -250,7 +250,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     def _panel(self) -> list[Row]:
         sketch, (column, line) = self.sketch, self.cursor
         x, y = (column + 0.5) * sketch.cell, (len(sketch.rows) - line - 0.5) * sketch.cell
-        rows = [row(("pen", "dim"))]
+        rows = [row(("pen", "title"))]
         for number, (mark, name) in enumerate(PENS, 1):
             is_chosen = mark == self._pen
             where = "" if mark in "# " or sketch.find(mark) else "  not set"
@@ -262,14 +262,14 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
             )
         rows += [
             row(),
-            row(("cursor", "dim")),
+            row(("cursor", "title")),
             row(f" x {x:6.2f} m"),
             row(f" y {y:6.2f} m"),
             row(),
-            row(("one square", "dim")),
+            row(("one square", "title")),
             row(f" {sketch.cell:g} m"),
             row(),
-            row(("the way", "dim")),
+            row(("the way", "title")),
             *self._proof,
         ]
         width, height = self.query_one("#panel", TextRows).size

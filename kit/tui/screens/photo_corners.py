@@ -210,7 +210,7 @@ class PhotoCornersScreen(ActivePaintScreen["Corners | None"]):
 
     def _show(self) -> None:
         count = len(self.placed)
-        heading = row((f"{self._name}", "bold"), (f"  {count} of {CORNERS} corners of the sheet", "dim"))
+        heading = row((f"{self._name}", "title"), (f"  {count} of {CORNERS} corners of the sheet", "dim"))
         self.query_one("#heading", TextRows).show([heading])
         note = (
             "Enter goes on. The corners are moved to the sheet's edges where those are seen."

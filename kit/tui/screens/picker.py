@@ -20,6 +20,7 @@ from kit.plain_text import wrap
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialog import Dialog
 from kit.tui.widgets.text_field import KitInput
+from kit.tui.widgets.text_rows import LOOKS
 
 LIST_WIDTH, WIDEST = 76, 120
 """Columns of a list with its border, at least where the screen has them, and at most."""
@@ -234,4 +235,4 @@ class Picker(Dialog[str | None]):
         lines = wrap(choice.text, room, first=" " * (len(name) - self._width))
         lines[:1] = [each.lstrip() for each in lines[:1]]
         text = name + ("\n  " + " " * self._width).join(lines)
-        return Text.assemble("> " if is_chosen else "  ", (text, "reverse bold" if is_chosen else ""))
+        return Text.assemble("> " if is_chosen else "  ", (text, LOOKS["chosen"] if is_chosen else ""))

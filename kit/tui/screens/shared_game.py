@@ -179,7 +179,7 @@ class SharedScreen(WatchScreen):
         if not self.is_active:
             return
         if state is None:  # the world has not begun
-            self._rows("heading").show([row((self._level.title, "bold"), f"  {self._mode.value}")])
+            self._rows("heading").show([row((self._level.title, "title"), f"  {self._mode.value}")])
             return
         rows = shared_heading(self._level.title, self._mode, state, self.player, self.size.width)
         self._rows("heading").show([rows])

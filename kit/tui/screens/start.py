@@ -174,7 +174,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         if view.failure is not None:
             driver = "no program drives"
         return at_both_edges(
-            row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width
+            row(("The terminal robot-learning kit", "title")), row((driver, "dim")), self.size.width
         )
 
     def _show_menu(self) -> None:

@@ -65,7 +65,7 @@ class TextScreen(ActivePaintScreen[None]):
         self._top = max(0, min(self._top, len(self._shown) - room))
         last = min(len(self._shown), self._top + room)
         where = lines_shown(self._top, last - self._top, len(self._shown))
-        heading = at_both_edges(row((self._title, "bold")), row((where, "dim")), self.size.width)
+        heading = at_both_edges(row((self._title, "title")), row((where, "dim")), self.size.width)
         self.query_one("#heading", TextRows).show([heading])
         self.query_one("#body", TextRows).show(self._shown[self._top : last])
         self.query_one("#keys", TextRows).show([self._keys()])

@@ -157,7 +157,7 @@ class TrainingScreen(RowsScreen[None]):
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
-        self._rows("heading").show([row((self.run_name, "bold"), ("  opening ...", "dim"))])
+        self._rows("heading").show([row((self.run_name, "title"), ("  opening ...", "dim"))])
         self._rows("keys").show([training_rows.keys(self.screen_actions, self.state, self.size.width)])
         self._follower.start()
 

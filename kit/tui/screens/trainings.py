@@ -163,7 +163,7 @@ class TrainingsScreen(RowsScreen[None]):
         count = (
             counted(len(runs), "run") if runs else counted(len(self._tasks), "task") if self._tasks else ""
         )
-        self._rows("heading").show([at_both_edges(row(("Trainings", "bold")), row((count, "dim")), width)])
+        self._rows("heading").show([at_both_edges(row(("Trainings", "title")), row((count, "dim")), width)])
         if runs is None:
             self._rows("body").show([row((" reading ...", "dim"))])
         else:

@@ -248,7 +248,7 @@ class LessonPage(Container):
         above = room // 3 if room > 2 * LEAST_FILE else 0
         top = max(0, min(content.file_line - above, len(content.file) - room))
         more = lines_shown(top, min(room, len(content.file)), len(content.file))
-        head = [row((content.file_title, "bold"), (f"  {more}", "dim"))] if has_title else []
+        head = [row((content.file_title, "title"), (f"  {more}", "dim"))] if has_title else []
         shown = [*head, *(fitted(each, work.size.width) for each in content.file[top : top + room])]
         columns = min(work.size.width - MARGIN, TEXT_WIDTH)
         left = work.size.height - len(shown) - 1

@@ -171,7 +171,7 @@ class DevicesBoard(Board):
         lit = Counter(cell for laser in self._lasers for cell in _squares_seen_from(task, laser))
         return [
             told_rows("letters in sight of", sights, width),
-            [row(("letters that nothing sees", "dim")), row(f" {' '.join(missed) or 'none'}")],
+            [row(("letters that nothing sees", "title")), row(f" {' '.join(missed) or 'none'}")],
             figure_rows(
                 "lasers that see each square",
                 task.grid,

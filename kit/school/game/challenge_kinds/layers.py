@@ -148,7 +148,7 @@ class LayersBoard(Board):
         """All that is still wrong."""
         wrong = find_breaches(self._case, self._make_plan)
         lines = (line for each in wrong for line in wrap(str(each), width, "  ", "    "))
-        return [[row(("still wrong", "dim")), *map(row, lines)]] if wrong else []
+        return [[row(("still wrong", "title")), *map(row, lines)]] if wrong else []
 
     def move(self, columns: int, rows: int) -> None:
         self._row = max(0, min(self._row + rows, len(self._names) - 1))

@@ -202,7 +202,7 @@ class TuningBoard(Board):
 
     def details(self, width: int) -> list[list[Row]]:
         """The grid that it learns on."""
-        return [[row(("the grid", "dim")), *grid_rows(self._task.grid, {})]]
+        return [[row(("the grid", "title")), *grid_rows(self._task.grid, {})]]
 
     def rows(self, scale: int = 1) -> list[Row]:
         learned = learn(self._task, tuple(self._numbers.values()))
