@@ -43,8 +43,9 @@ def table_rows(table: Table, width: int) -> TableRows:
         head.append(row((COLUMN_GAP.join("-" * each for each in widths), Tone.DIM)))
     if table.grouped and cells:
         _share_first_cells(table, cells, widths[0])
+    label = Tone.PLAIN if any(heads) else Tone.BOLD  # names, and what is said of each
     entries = (
-        tuple(_placed_rows(texts, widths, table.columns, tuple(map(_cell_tone, told))))
+        tuple(_placed_rows(texts, widths, table.columns, _tones_of(told, label)))
         for texts, told in zip(cells, table.rows, strict=True)
     )
     return TableRows(tuple(head), tuple(entries))
@@ -173,8 +174,12 @@ def _cell_text(cell: Cell, column: Column) -> str:
     return text if len(text) <= MAX_CELL_LENGTH else text[: MAX_CELL_LENGTH - 3] + "..."
 
 
-def _cell_tone(cell: Cell) -> Tone:
-    return cell.tone if isinstance(cell, ToneText) else Tone.PLAIN
+def _tones_of(cells: Sequence[Cell], label: Tone) -> tuple[Tone, ...]:
+    """``label``: of a first cell that has none of its own; faint where what is said of it stands out."""
+    tones = [cell.tone if isinstance(cell, ToneText) else Tone.PLAIN for cell in cells]
+    if cells and label and not isinstance(cells[0], ToneText):
+        tones[0] = Tone.DIM if Tone.BOLD in tones else label
+    return tuple(tones)
 
 
 def _share_first_cells(table: Table, cells: list[list[str]], width: int) -> None:

@@ -271,6 +271,7 @@ def puzzle_beside(view: PuzzleView, width: int, height: int) -> list[Row]:
     worth and what helps to solve it, in two columns where there is room. The picture is the board, or a drawing of it, which then
     stands among the rest."""
     board, glyphs = view.board, view.glyphs
+    lesson: list[Row] = []
     if drawing := board.drawing(int(width * DRAWING_SHARE), height - 1, glyphs):
         column, left = max(map(row_width, drawing)) + GAP, drawing
     else:
@@ -302,7 +303,12 @@ def puzzle_beside(view: PuzzleView, width: int, height: int) -> list[Row]:
         below = [table, *view.details(room, tries)]
     text += _stacked(below, room, height - len(text))
     shown = side_by_side([row(), *left], text, column)
-    return shown if count == 1 else side_by_side(shown, _stacked(details, room, height), column + room + GAP)
+    if count == 1:
+        return shown
+    third = _stacked(details, room, height)
+    if not lesson:
+        third += lesson_below(view.challenge, room, height - len(third))
+    return side_by_side(shown, third, column + room + GAP)
 
 
 def _stacked(parts: Iterable[Sequence[Row]], width: int, height: int) -> list[Row]:

@@ -110,7 +110,9 @@ class CaseEditor(RowsScreen[LayerCase]):
             step = Step("case", "", (), laser=None if laser is None else laser.name)
             beside.show(picture(case, step, room, rows, self._glyphs))
         assumed = row(("bodies of one model never meet", "warn")) if editing.ignore_self_collisions else row()
-        self._rows("heading").show([at_both_edges(row(("a case by hand", "title")), assumed, self.size.width)])
+        self._rows("heading").show(
+            [at_both_edges(row(("a case by hand", "title")), assumed, self.size.width)]
+        )
         self._rows("remark").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
         self._rows("keys").show([footer(self.screen_actions, self.size.width)])
 

@@ -23,6 +23,7 @@ WRITTEN = [each for each in all_challenges() if each.task.answer_file]
 def test_every_kind_has_a_challenge_and_every_challenge_a_lesson() -> None:
     assert {each.task.kind for each in all_challenges()} == set(challenge_kinds)
     assert {each.lesson for each in all_challenges()} <= set(lesson_names())
+    assert len({each.task_text for each in all_challenges()}) == len(all_challenges()), "an idea of its own"
 
 
 def test_the_verb_lists_shows_judges_and_keeps_the_best(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
@@ -44,10 +45,12 @@ class DevicesTask(ChallengeTask):
     answer_file = "lasers.txt"
 
     grid: tuple[str, ...]
+    reach: float = math.inf
+    """How far a laser sees [squares]."""
 
     @classmethod
     def read(cls, section: Section, folder: Path) -> Self:
-        return cls(section.texts("map", at_least=1))
+        return cls(section.texts("map", at_least=1), section.number("reach", math.inf, above=0))
 
     def lines(self) -> list[str]:
         columns = "   " + "".join(str(column % 10) for column in range(len(self.grid[0])))
@@ -80,7 +83,9 @@ class DevicesTask(ChallengeTask):
         return free_cells(self.grid)
 
     def sees(self, laser: Cell, square: Cell) -> bool:
-        """Whether no wall lies on the straight line between the middles of two squares."""
+        """Whether no wall lies on the straight line between the middles of two squares, and it is no longer than a laser reaches."""
+        if math.dist(laser, square) > self.reach:
+            return False
         steps = STEPS_PER_SQUARE * max(abs(laser[0] - square[0]), abs(laser[1] - square[1]), 1)
         for step in range(steps + 1):
             row, column = (round(a + (b - a) * step / steps) for a, b in zip(laser, square, strict=True))
