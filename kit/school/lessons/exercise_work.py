@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import threading
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cached_property
@@ -58,6 +60,18 @@ def _is_text(file: Path) -> bool:
         return True
     except (OSError, UnicodeDecodeError):
         return False
+
+
+def _syntax_error(text: str) -> SyntaxError | None:
+    """Why a text is no program of Python, if that is so because of one of its characters. It is read, never run."""
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            ast.parse(text)
+    except SyntaxError as error:
+        return error
+    except (ValueError, RecursionError, MemoryError):
+        return None
+    return None
 
 
 class ExerciseAttempt:
@@ -184,6 +198,18 @@ class ExerciseAttempt:
         """What the last check's first error says that names a line of the edited file; empty if none does."""
         found = self._find_error(self.edited_file)
         return "" if found is None else found.string[found.end() :].lstrip(": ,")
+
+    @property
+    def error_column(self) -> int:
+        """The column of the edited file's ``error_line`` at which it goes wrong, counted from 1: where Python stops reading it,
+        if it does so in that line; else the line's first character."""
+        lines, number = self.edited_lines(), self.error_line
+        if not 0 < number <= len(lines):
+            return 1
+        found = _syntax_error("\n".join(lines)) if self.edited_file.suffix == ".py" else None
+        if found is not None and found.lineno == number and found.offset:
+            return max(1, min(found.offset, len(lines[number - 1]) + 1))
+        return 1 + len(lines[number - 1]) - len(lines[number - 1].lstrip())
 
     def _find_error(self, file: Path) -> re.Match[str] | None:
         """Where the last check's first error names a line of a file."""

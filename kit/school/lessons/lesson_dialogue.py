@@ -140,6 +140,10 @@ class LessonDialogue(Dialogue):
         """The one that was opened last."""
         self.is_writing = False
         """Whether keys are letters of the program, in an editor beside the lesson. The face says so."""
+        self.is_at_code = False
+        """Whether the program is read and scrolled, not the words of the step."""
+        self.is_code_cut = False
+        """Whether not all of the program is in sight beside the words. The face says so."""
         self._film: OwnAgentFilm | None = None
         """The film of the student's own agent, in the step that shows it."""
         self._drive_follows = False
@@ -153,7 +157,7 @@ class LessonDialogue(Dialogue):
     def enter(self, step: LessonStep) -> None:
         """Comes to a step."""
         self.step, self.work, self.has_ended, self._problem, self._looks_at = step, None, False, "", ""
-        self._film, self._drive_follows = None, False
+        self._film, self._drive_follows, self.is_at_code = None, False, False
         self.is_answer_shown = not self.is_waiting
         if step.exercise is not None:
             try:
@@ -604,6 +608,10 @@ class LessonDialogue(Dialogue):
     def edit_here(self) -> Effect:
         return self._choose_file(EditHere)
 
+    def look_at_code(self) -> Effect:
+        self.is_at_code = not self.is_at_code
+        return None
+
     def _choose_file(self, request: type[Edit | EditHere]) -> Effect:
         """Asks which of several files is to be opened."""
         work = self._work
@@ -748,6 +756,9 @@ class LessonDialogue(Dialogue):
     def can_edit(self) -> bool:
         return self.work is not None and not self.work.by_hand
 
+    def can_look_at_code(self) -> bool:
+        return self.can_edit() and (self.is_code_cut or self.is_at_code)
+
     def can_hint(self) -> bool | str:
         if self.work is None:
             return False
@@ -839,6 +850,10 @@ class LessonDialogue(Dialogue):
         DialogueAction(ACTIONS["edit_file"], edit, can_edit),
         DialogueAction(
             ACTIONS["editor"], edit_here, can_edit, word=lambda dialogue: "write", is_for_lines=False, while_busy=True
+        ),
+        DialogueAction(
+            letter("code", "Tab", "code", "read the program, or the task", name="tab"), look_at_code, can_look_at_code,
+            word=lambda dialogue: "task" if dialogue.is_at_code else "code", is_for_lines=False, while_busy=True,
         ),
         DialogueAction(ACTIONS["hint"], hint, can_hint),
         DialogueAction(ACTIONS["drive"], drive, can_drive),

@@ -41,7 +41,14 @@ from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.suspend import edit_aside, run_aside
 from kit.tui.theme import Theme
-from kit.tui.widgets.lesson_page import LEAST_ASIDE, LessonContent, LessonPage, PageLayout, words_beside
+from kit.tui.widgets.lesson_page import (
+    LEAST_ASIDE,
+    FileColumns,
+    LessonContent,
+    LessonPage,
+    PageLayout,
+    words_beside,
+)
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import TextRows
@@ -59,6 +66,8 @@ HELD: Final = (*ARROWS, "pageup", "pagedown", "space")
 """Keys that do more the longer they are held."""
 MOST_DRAWN: Final = 10
 """Rows of a picture of a check that is shown at once, as many as a step's own has; `w` shows longer ones."""
+MOST_PRINTED: Final = 7
+"""Rows of what the program printed; `u` shows all."""
 EDITING: Final = "-editing"
 """The screen's class while the editor is beside the task."""
 WIDEST_EDITOR: Final = 100
@@ -223,7 +232,6 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self._rows("status").show_all(status)
         self._rows("heading").show([lesson_rows.heading(dialogue.session.lesson_progress, step, width)])
         self._show_title()
-        self._show_keys()
         words = self._word_rows()
         # With the empty row before it.
         answer = max((len(self._placed_rows(each)) + 1 for each in dialogue.possible_answers()), default=0)
@@ -249,22 +257,25 @@ class LessonScreen(DialogueScreen, DriveScreen):
             question,
             shown,
             moves=self.stage.world if is_backdrop else moves,
-            is_backdrop=is_backdrop,
             # Not all at once, where there is little room.
             moves_rows=self._playback_rows,
             first_words=max(self._said_row, answer, len(words) - self._said_row),
             most_words=most_words,
             words_width=self._width,
+            step_rows=self._said_row,
             scrolls_with="Esc, down" if self._is_writing else "PgDn" if dialogue.is_driving else "down",
             file=self._numbered(lines) if lines else (),
             file_title=work.edited_file.name if work is not None and has_work else "",
             file_line=work.line_to_show - 1 if work is not None and has_work else 0,
-            log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
+            file_columns=self._file_columns,
+            is_at_file=dialogue.is_at_code,
             panels=self._panels(),
             page_width=width,
             aids=self._aids() if lines and is_roomy else (),
         )
         self._page.show(content, room - self._editor_rows(room), layout)
+        dialogue.is_code_cut = has_work and self._page.is_file_cut
+        self._show_keys()
 
     def _opens_backdrop(self) -> bool:
         """Opens the world in which the exercise's program will drive, where there is one; says whether."""
@@ -275,7 +286,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         return scene is not None
 
     def _panels(self) -> list[Panel]:
-        """What a large screen has besides: the lesson's steps, and the words that it introduces."""
+        """What a large screen has besides: the lesson's steps, what the check of this one looks at, until it has, and the words
+        that the lesson introduces."""
         if self._is_editing or PageLayout.of(*self.room, is_wide=True) is not PageLayout.ROOMY:
             return []
         progress = self.dialogue.session.lesson_progress
@@ -286,17 +298,20 @@ class LessonScreen(DialogueScreen, DriveScreen):
         ):  # where not all may have room, it begins shortly before that
             first = max(0, min(here.number - 2, len(lesson.steps) - LEAST_STEPS))
         panels = [Panel("steps", (lesson_rows.steps_table(progress, here, first),))]
+        work = self.dialogue.work
+        if work is not None and work.report is None and not work.by_hand and work.criteria:
+            rows = [(title, ToneText(f"{points:g}", Tone.DIM)) for title, points in work.criteria]
+            panels.append(Panel("what is checked, and its points", (labelled_table(rows, is_tight=True),)))
         with suppress(WorldError, FileNotFoundError):  # it is told where the glossary is opened
             panels += [Panel("words", words)] if (words := lesson_words(lesson.name)) else []
         return panels
 
     def _aids(self) -> list[Panel]:
-        """What is shown below a file that leaves room: what its check looks at, until it has, and the step to read before it."""
+        """What is shown below a file that leaves room: what the program printed, and the step to read before it."""
         work, here = self.dialogue.work, self.dialogue.step
         panels = []
-        if work is not None and work.report is None and work.criteria:
-            rows = [(title, ToneText(f"{points:g}", Tone.DIM)) for title, points in work.criteria]
-            panels.append(Panel("what is checked, and its points", (labelled_table(rows, is_tight=True),)))
+        if work is not None and (printed := work.printed_lines):
+            panels.append(Panel("what it printed", (Picture(tuple(printed[-MOST_PRINTED:]), indent=0),)))
         before = self.dialogue.session.lesson.steps[: here.number - 1]
         read = next((each for each in reversed(before) if each.kind is StepKind.EXPLAIN), None)
         if read is not None:
@@ -305,16 +320,22 @@ class LessonScreen(DialogueScreen, DriveScreen):
             panels.append(Panel(f"step {read.number}: {read.title}", told))
         return panels
 
-    def _numbered(self, lines: Sequence[str]) -> list[Row]:
-        """The student's file in colours, with the numbers of its lines."""
+    def _numbered(self, lines: Sequence[str]) -> list[list[Row]]:
+        """The student's file in colours, with the numbers of its lines, and below a line that the check names what is wrong."""
         from kit.tui.widgets.program_colours import LANGUAGES, coloured_rows  # of no use to the first frame
 
         work, digits = self.dialogue.work, len(str(len(lines)))
         language = None if work is None else LANGUAGES.get(work.edited_file.suffix)
-        return [
-            row((f"{number:>{digits}} ", "dim"), *line)
+        numbered = [
+            [row((f"{number:>{digits}} ", "dim"), *line)]
             for number, line in enumerate(coloured_rows(lines, language), 1)
         ]
+        if work is not None and work.seconds is None and 0 < work.error_line <= len(lines):
+            blank = " " * (digits + work.error_column)
+            numbered[work.error_line - 1].append(
+                row((f"{blank}^ {work.error_text}".partition("\n")[0], "bad"))
+            )
+        return numbered
 
     def _word_rows(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
@@ -402,10 +423,23 @@ class LessonScreen(DialogueScreen, DriveScreen):
         width = self.room.width - self._editor_width
         if self._layout is PageLayout.STACKED:
             return width
+        if (columns := self._file_columns) is not None:
+            return columns.words
         dialogue, usual = self.dialogue, words_beside(width)
         if dialogue.has_scene or dialogue.step.exercise is not None or dialogue.step.picture:
             return usual
         return max(usual, min(self._code_columns(width), width - LEAST_ASIDE))
+
+    @property
+    def _file_columns(self) -> FileColumns | None:
+        """The columns of a page that shows the student's file beside the words; None: this one does not."""
+        work = self.dialogue.work
+        if work is None or work.by_hand or self._layout is not PageLayout.ROOMY:
+            return None
+        lines = work.edited_lines()
+        longest = max(map(len, lines), default=0) + len(f"{len(lines)} ")
+        picture = max(map(len, self.dialogue.step.picture.splitlines()), default=0)
+        return FileColumns.of(self.room.width, longest, picture + 2 * MARGIN)
 
     def _code_columns(self, width: int) -> int:
         """Columns that the step's words need for none of their lines of code to be broken, on a page of so many."""
@@ -480,6 +514,10 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def _celebrate(self, work: ExerciseAttempt) -> None:
         """Lets the line of a check that has passed move once, unless motion is reduced."""
+        if work.report is not None and work.report.is_passed:
+            self.dialogue.is_at_code = (
+                False  # its run is seen in place of the code, where that has no place of its own
+            )
         if work.report is None or not work.report.is_passed or self.theme.terminal.reduce_motion.value:
             return
         self._passed_work, self._passed_at = work, time.monotonic()
@@ -511,7 +549,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             event.prevent_default()
 
     def action_scroll(self, lines: int) -> None:
-        self._page.scroll_words(lines)
+        self._page.scroll(lines)
 
     # What is shown beside the lesson
 

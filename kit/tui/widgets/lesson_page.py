@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from itertools import accumulate
 from typing import Final
 
 from textual.app import ComposeResult
@@ -12,7 +14,8 @@ from textual.containers import Container
 from textual.widget import Widget
 
 from kit.dialogue.dialogue import Panel
-from kit.document.rows import MARGIN, TEXT_WIDTH, Row, fitted, lines_shown, row, row_width
+from kit.document.rows import MARGIN, TEXT_WIDTH, Row, at_both_edges, broken, lines_shown, row, row_width
+from kit.plain_text import counted
 from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
@@ -30,16 +33,46 @@ LINES_SEEN: Final = 2
 BESIDE: Final = (62, 82)
 """Columns of the words, where the picture is beside them: at least, and at most."""
 LEAST_BESIDE: Final = 110
-"""Columns of the picture or the file, before the words get more than they need."""
+"""Columns of the picture, before the words get more than they need."""
 
 ROOMY_SIZE: Final = (120, 30)
-"""Columns and rows from which on the scene, the file and its log stand beside the words, all at once."""
+"""Columns and rows from which on the scene and the file stand beside the words, all at once."""
 LEAST_ASIDE: Final = 36
 """Columns of the panels beside the words, at least."""
-COLUMNS_WIDTH: Final = 180
-"""Columns from which on the file has a column of its own."""
-MOST_LOG: Final = 8
-"""Rows of what the program printed."""
+LEAST_CODE, MOST_CODE, CODE_STEP = 56, 112, 4
+"""Columns of a program's longest line: at least, at most, and the steps in which they grow, so that not each letter moves all."""
+WORDS_BETWEEN: Final = (62, 78)
+"""Columns of the words between the file and the panels: at least, and at most."""
+LEAST_BEYOND: Final = 46
+"""Columns of the panels beyond the file and the words, at least."""
+MOST_MAP: Final = 20
+"""Rows of a scene below the words."""
+ROWS_FOR_VERDICT: Final = 12
+"""Rows that are left free for a verdict, where the scene has its least ones all the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileColumns:
+    """The columns of a page that shows a file beside its words, and panels beside both where there is room."""
+
+    file: int
+    words: int
+    aside: int
+
+    @classmethod
+    def of(cls, columns: int, longest: int, least_words: int = LEAST_ASIDE) -> FileColumns:
+        """The columns for a file whose longest line, with its number, has so many: it is whole before the words are wide.
+
+        >>> FileColumns.of(120, 82), FileColumns.of(200, 82)
+        (FileColumns(file=84, words=36, aside=0), FileColumns(file=85, words=69, aside=46))
+        """
+        needed = min(max(LEAST_CODE, -(-longest // CODE_STEP) * CODE_STEP), MOST_CODE) + 1
+        left = columns - needed - LEAST_BEYOND
+        if left >= max(WORDS_BETWEEN[0], least_words):
+            words = min(left, max(WORDS_BETWEEN[1], least_words))
+            return cls(needed, words, columns - needed - words)
+        words = max(least_words, LEAST_ASIDE, min(columns - needed, words_beside(columns)))
+        return cls(columns - words, words, 0)
 
 
 def words_beside(columns: int) -> int:
@@ -80,8 +113,6 @@ class LessonContent:
     """Fixed characters, in place of a scene."""
     moves: LessonSceneView | PlaybackSceneView | None = None
     """The scene that is seen, if any."""
-    is_backdrop: bool = False
-    """Whether nothing moves in it: it is seen where the file leaves room for it."""
     moves_rows: int = 0
     """Rows that the scene has a use for; 0: as many as there are."""
     first_words: int = 0
@@ -90,17 +121,21 @@ class LessonContent:
     """Rows of words there may be in this step: that many are kept free above what is asked, so that it never moves."""
     scrolls_with: str = "down"
     """The key that shows more words."""
-    file: Sequence[Row] = ()
-    """The student's file, line by line; shown where there is room."""
+    step_rows: int = 0
+    """Rows of the step's own words, without what is said to what the student did."""
+    file: Sequence[Sequence[Row]] = ()
+    """The student's file: the rows of each of its lines; shown where there is room."""
+    file_columns: FileColumns | None = None
+    """The columns of a roomy page that shows the file."""
     words_width: int = BESIDE[0]
     """Columns of the words, where something stands beside them."""
     file_title: str = ""
     file_line: int = 0
     """The line of it to look at first, counted from 0."""
+    is_at_file: bool = False
+    """Whether the file is what is read and scrolled: where it has no place beside the words it stands in theirs."""
     aids: Sequence[Panel] = ()
-    """Below the file, as far as it leaves room; where it stands below a scene, below the words."""
-    log: Sequence[Row] = ()
-    """What the student's program printed."""
+    """Below the file, as far as it leaves room; where a scene stands there, below the words."""
     panels: Sequence[Panel] = ()
     """What a roomy page has where the words leave room: below them, or beside them where nothing else is."""
     page_width: int = 0
@@ -111,36 +146,31 @@ class LessonPage(Container):
     """``scenes``: are opened and shut by whoever owns the sheet; one of them is seen at a time."""
 
     DEFAULT_CSS = """
-    LessonPage { height: 1fr; layout: vertical; }
-    LessonPage #left, LessonPage #stage { height: auto; layout: vertical; }
+    LessonPage { height: 1fr; layout: vertical; layers: base scene; }
+    LessonPage #stage { height: auto; layout: vertical; }
     LessonPage #picture { height: auto; }
     LessonPage #words { height: 1fr; }
     LessonPage #ask { height: auto; }
     LessonPage #right { width: 1fr; height: 1fr; layout: vertical; }
     LessonPage #work { display: none; }
-    LessonPage #log { display: none; height: auto; }
     LessonPage #below, LessonPage #aside { display: none; width: 1fr; }
     LessonPage #told { height: 1fr; layout: horizontal; }
     LessonPage.-aside #aside { display: block; height: 1fr; }
     LessonPage.-panels #below { display: block; }
-    LessonPage.-beside, LessonPage.-roomy { layout: horizontal; }
-    LessonPage.-beside #left, LessonPage.-roomy #left { width: 1fr; height: 1fr; }
-    LessonPage.-beside #stage, LessonPage.-roomy #stage { height: 1fr; padding: 0 1 0 0; }
-    LessonPage.-roomy.-work #work { display: block; width: 1fr; height: 1fr; }
-    LessonPage.-roomy.-work #log { display: block; }
-    LessonPage #work, LessonPage #log { padding: 0 1 0 0; }
-    LessonPage.-below #left { dock: bottom; }
-    LessonPage.-below #work { display: block; height: 1fr; padding: 0 2; }
-    LessonPage.-roomy.-still #stage { height: auto; }
-    LessonPage.-roomy.-columns #left { layout: horizontal; }
-    LessonPage.-roomy.-columns #stage { width: 1fr; }
+    LessonPage.-beside { layout: horizontal; }
+    LessonPage.-beside #stage { width: 1fr; height: 1fr; padding: 0 1 0 0; }
+    LessonPage.-work #stage { layer: scene; padding: 0; }
+    LessonPage.-work #work { display: block; }
+    LessonPage.-below #work { display: block; dock: bottom; }
+    LessonPage.-file #work { display: block; height: 1fr; }
+    LessonPage.-file #told, LessonPage.-file #stage { display: none; }
     """
 
     def __init__(self, *scenes: LessonSceneView | PlaybackSceneView) -> None:
         super().__init__()
         self._scenes = scenes
         self._texts = {
-            name: TextRows(id=name) for name in ("picture", "log", "work", "words", "ask", "below", "aside")
+            name: TextRows(id=name) for name in ("picture", "work", "words", "ask", "below", "aside")
         }
         """Made at once: the screen may be given its size, and fill them, before they are mounted."""
         self._content = LessonContent(())
@@ -148,15 +178,23 @@ class LessonPage(Container):
         self._offset = 0
         """Rows of the picture that stand above the words and scroll with them."""
         self._room = 1
-        self._heights: dict[str, int | str] = {}
+        self._sizes: dict[str, tuple[int | str | None, ...]] = {}
+        self._stage_offset = 0, 0
+        self._file_top: int | None = None
+        """The first row of the file in sight, once it was scrolled; None: the one that shows the line to look at."""
+        self._file_shown: object = None
+        """The line of the file that is to be looked at, for which it was scrolled."""
+        self._file_room = 1
+        self._file_place: tuple[int, int, Sequence[Panel]] = (1, 1, ())
+        """Columns and rows of the file, and what stands below it."""
+        self.is_file_cut = False
+        """Whether not all of the file is in sight."""
 
     def compose(self) -> ComposeResult:
-        with Container(id="left"):
-            with Container(id="stage"):
-                yield from self._scenes
-                yield self._texts["picture"]
-                yield self._texts["log"]
-            yield self._texts["work"]
+        with Container(id="stage"):
+            yield from self._scenes
+            yield self._texts["picture"]
+        yield self._texts["work"]
         with Container(id="told"):
             with Container(id="right"):
                 yield self._texts["words"]
@@ -167,56 +205,82 @@ class LessonPage(Container):
     def show(self, content: LessonContent, room: int, layout: PageLayout) -> None:
         """``room``: rows there are for all of it."""
         is_roomy = layout is PageLayout.ROOMY
-        has_work = bool(content.file_title) and is_roomy
         picture = [row("  " + line) for line in content.picture]
         self._offset = len(picture) if is_roomy else 0
         if is_roomy:  # a picture may be wider than what is left beside the words
             content, picture = replace(content, words=[*picture, *content.words], picture=()), []
-        # A file that is short stands below the scene, whole; a long one beside it.
-        short = len(content.file) + 2
-        is_short = has_work and short + LEAST_PICTURE <= room
-        if content.is_backdrop and not is_short:
-            content = replace(content, moves=None)
         self._content = content
+        shown = content.file_title, content.file_line
+        if shown != self._file_shown:
+            self._file_shown, self._file_top = shown, None
+        columns = content.file_columns if is_roomy and content.file_title else None
         has_picture = content.moves is not None or bool(picture)
-        is_beside = layout is not PageLayout.STACKED and (has_picture or has_work)
-        self.set_class(is_beside and not is_roomy, "-beside")
-        self.set_class(is_beside and is_roomy, "-roomy")
-        self.set_class(has_work, "-work")
-        self.set_class(content.moves is None, "-still")
-        self.query_one("#told").styles.width = content.words_width if is_beside else None
-        # Where nothing moves the file has all columns beside the words.
-        is_columns = self.size.width >= COLUMNS_WIDTH and content.moves is not None and not is_short
-        self.set_class(is_columns, "-columns")
-        self._set_height(self._rows("work"), short if is_short and content.moves is not None else "1fr")
+        is_beside = columns is not None or (layout is not PageLayout.STACKED and has_picture)
+        is_file = columns is None and content.is_at_file and bool(content.file)
+        self.set_class(is_beside, "-beside")
+        self.set_class(columns is not None, "-work")
+        self.set_class(is_file, "-file")
         self._rows("picture").show_all(picture)
         self._rows("picture").display = bool(picture)
+        self.query_one("#stage").display = has_picture
         for scene in self._scenes:
             scene.display = scene is content.moves
         self._rows("ask").show_all(content.asked)
+        if columns is not None:
+            self._show_beside_file(content, columns, room)
+            return
         asked = len(content.asked)
         least = min(LEAST_PICTURE, max(room - asked - LEAST_WORDS, 4))
         rows = min(max(room - content.first_words - asked, least), content.moves_rows or MOST_PICTURE)
         if content.moves is not None:
-            self._set_height(content.moves, "1fr" if is_beside else rows)
+            self._set_size(content.moves, height="1fr" if is_beside else rows)
         used = 0 if is_beside else rows if content.moves is not None else len(picture)
         self._room = max(1, room - used - asked)
         below = self._room - max(content.most_words, len(content.words)) - 1
-        is_below = bool(content.file_title) and not is_beside and not used and below >= LEAST_FILE
+        is_below = bool(content.file) and not is_beside and not used and below >= LEAST_FILE and not is_file
         self.set_class(is_below, "-below")
-        self._set_height(self.query_one("#left"), below if is_below else "1fr" if is_beside else "auto")
-        has_work = has_work or is_below
+        self._place_stage("1fr", "1fr" if is_beside else "auto")
+        self._set_size(self.query_one("#told"), content.words_width if is_beside else None, "1fr")
         kept = max(content.most_words, len(content.words))
-        self._set_height(self._rows("words"), min(kept, self._room) if content.asked else "1fr")
+        self._set_size(self._rows("words"), height=min(kept, self._room) if content.asked else "1fr")
         self._show_words()
-        self._show_aside(0 if is_beside or is_below else room - used)
-        if is_short and content.moves is not None:  # the file has no row more than it needs
-            panels = (*content.panels[:1], *content.aids, *content.panels[1:])
-            content = self._content = replace(content, panels=panels, aids=())
+        self._show_aside(0 if is_beside or is_below or is_file else room - used)
         self._show_below(self._room - kept if is_beside and is_roomy else 0)
-        if has_work:
-            # then it has the height that it will have
-            self.call_after_refresh(self._show_work, content, has_title=not is_below)
+        self._set_size(self._rows("work"), None, below if is_below else "1fr")
+        self.is_file_cut = bool(content.file) and not is_below
+        if is_below or is_file:
+            self._show_file(content.page_width, below if is_below else room)
+
+    def _show_beside_file(self, content: LessonContent, columns: FileColumns, room: int) -> None:
+        """The file in its whole width, the words beside it, and the scene below the one that leaves room for it."""
+        left = room - 1 - sum(len(self._file_rows(line[:1], columns.file)) for line in content.file)
+        below_words = room - content.step_rows - self._offset - 1
+        rows, x = 0, 0
+        if content.moves is not None:
+            rows = max(LEAST_PICTURE, left - 1)
+            if left <= LEAST_PICTURE <= below_words:
+                rows, x = max(LEAST_PICTURE, min(below_words - ROWS_FOR_VERDICT, MOST_MAP)), columns.file
+            self._set_size(content.moves, height="1fr")
+            self._place_stage((columns.words if x else columns.file) - MARGIN, rows, (x, room - rows))
+        code = room if x or not rows else room - rows - 1
+        has_aids_here = not rows and left > LEAST_FILE
+        self._set_size(self._rows("work"), columns.file, code)
+        self._set_size(self.query_one("#told"), columns.words + columns.aside, "1fr")
+        self._set_size(self.query_one("#right"), columns.words, room - rows - 1 if x else "1fr")
+        self._room = max(1, (room - rows - 1 if x else room) - len(content.asked))
+        kept = max(content.most_words, len(content.words))
+        self._set_size(self._rows("words"), height=min(kept, self._room) if content.asked else "1fr")
+        self._show_words()
+        aids = () if has_aids_here else content.aids
+        panels = (*aids, *(() if columns.aside else content.panels))
+        if not columns.aside:
+            panels = (*content.panels[:1], *aids, *content.panels[1:])
+        self._content = replace(content, panels=panels)
+        self._show_below(self._room - kept)
+        beside = panel_rows(content.panels, columns.aside - MARGIN, room) if columns.aside else []
+        self.set_class(bool(beside), "-aside")
+        self._rows("aside").show(beside)
+        self._show_file(columns.file, code, content.aids if has_aids_here else ())
 
     def _show_aside(self, room: int) -> None:
         """Panels beside the words and what is asked, where nothing else is. ``room``: rows that both have."""
@@ -226,7 +290,7 @@ class LessonPage(Container):
         columns = min(content.page_width - column - MARGIN, TEXT_WIDTH)
         rows = panel_rows(content.panels, columns, room) if columns >= LEAST_ASIDE else []
         self.set_class(bool(rows), "-aside")
-        self.query_one("#right").styles.width = column if rows else None
+        self._set_size(self.query_one("#right"), column if rows else "1fr", "1fr")
         self._rows("aside").show(rows)
 
     def _show_below(self, room: int) -> None:
@@ -238,21 +302,53 @@ class LessonPage(Container):
             blank = [row()] * (room - len(rows) if content.asked else 0)
             self._rows("below").show_all([*blank, *(row(" " * MARGIN, *each) for each in rows)])
 
-    def _show_work(self, content: LessonContent, *, has_title: bool) -> None:
-        """The student's file, around the line to look at, and the end of what the program printed. Its title is left out where
-        the row below it has its name."""
-        log = content.log[-MOST_LOG + 1 :]
-        self._rows("log").show_all([row(("What it printed", "bold")), *log] if log else [])
-        work = self._rows("work")
-        room = max(1, work.size.height - has_title)
-        above = room // 3 if room > 2 * LEAST_FILE else 0
-        top = max(0, min(content.file_line - above, len(content.file) - room))
-        more = lines_shown(top, min(room, len(content.file)), len(content.file))
-        head = [row((content.file_title, "title"), (f"  {more}", "dim"))] if has_title else []
-        shown = [*head, *(fitted(each, work.size.width) for each in content.file[top : top + room])]
-        columns = min(work.size.width - MARGIN, TEXT_WIDTH)
-        left = work.size.height - len(shown) - 1
-        work.show([*shown, *(panel_rows(content.aids, columns, left) if columns >= LEAST_ASIDE else [])])
+    @staticmethod
+    def _file_rows(line: Sequence[Row], columns: int) -> list[Row]:
+        """A line of the file, on as many rows as it needs."""
+        return [part for each in line for part in broken(each, columns - 1)]
+
+    def _show_file(self, columns: int, rows: int, aids: Sequence[Panel] = ()) -> None:
+        """The student's file, around the line to look at, and below it what has room there. Beside the words it has a title; else
+        its last row says whether there is more."""
+        self._file_place = columns, rows, aids
+        content, has_title = self._content, self.has_class("-work")
+        lines = [self._file_rows(line, columns) for line in content.file]
+        starts = list(accumulate(map(len, lines), initial=0))
+        whole = [each for line in lines for each in line]
+        room = self._file_room = max(1, rows - has_title)
+        self.is_file_cut = len(whole) > room
+        if self._file_top is None:
+            above = room // 5 if room > 2 * LEAST_FILE else 0
+            self._file_top = starts[min(content.file_line, len(lines))] - above
+        top = self._file_top = max(0, min(self._file_top, len(whole) - room))
+        shown = whole[top : top + room]
+        last = top + len(shown)
+        if has_title:
+            first, end = bisect_right(starts, top) - 1, bisect_left(starts, last)
+            more = lines_shown(first, end - first, len(lines)) if self.is_file_cut else ""
+            keys = ("" if content.is_at_file else "Tab ") + "↑↓" if more else ""
+            title = row((content.file_title, "title"), (f"  {more}", "dim"))
+            shown = [at_both_edges(title, row((keys, "dim")), columns - 1), *shown]
+        elif last < len(whole):
+            hidden = len(lines) - bisect_right(starts, last - 1) + 1
+            keys = self._scroll_keys(is_here=content.is_at_file)
+            shown[-1] = row((f"  ... {counted(hidden, 'more line')}: {keys}", "dim"))
+        wide = min(columns - MARGIN, TEXT_WIDTH)
+        self._rows("work").show([*shown, *panel_rows(aids, wide, rows - len(shown) - 1)])
+
+    def _scroll_keys(self, *, is_here: bool) -> str:
+        """The keys that show more of what is scrolled now, or first have the other be that."""
+        return self._content.scrolls_with if is_here else f"Tab, {self._content.scrolls_with}"
+
+    def scroll(self, lines: int) -> None:
+        """Scrolls what is read, the words or the file."""
+        if not self._content.is_at_file:
+            self.scroll_words(lines)
+            return
+        page = max(1, self._file_room - 1)
+        by = lines if abs(lines) > len(self._content.file) else max(-page, min(lines, page))
+        self._file_top = (self._file_top or 0) + by
+        self._show_file(*self._file_place)
 
     def scroll_words(self, lines: int) -> None:
         """Scrolls by lines, at most by a page so that none is skipped; by more than there are, to the end."""
@@ -271,11 +367,21 @@ class LessonPage(Container):
         if not top <= line <= top + most:
             self.scroll_words_to(max(0, line - most) if line > top else line)
 
-    def _set_height(self, widget: Widget, height: int | str) -> None:
-        """Sets the height in rows, or as a share of the rest. Setting it again costs nothing."""
+    def _set_size(
+        self, widget: Widget, width: int | str | None = None, height: int | str | None = None
+    ) -> None:
+        """Sets the size in cells, or as a share of the rest. Setting it again costs nothing."""
         assert widget.id is not None
-        if self._heights.get(widget.id) != height:
-            self._heights[widget.id] = widget.styles.height = height
+        if self._sizes.get(widget.id) != (width, height):
+            self._sizes[widget.id] = width, height
+            widget.styles.width, widget.styles.height = width, height
+
+    def _place_stage(self, width: int | str, height: int | str, offset: tuple[int, int] = (0, 0)) -> None:
+        """Gives the scene its size, and its place where it stands on its own beside or below other parts."""
+        stage = self.query_one("#stage")
+        self._set_size(stage, width, height)
+        if self._stage_offset != offset:
+            self._stage_offset = stage.styles.offset = offset
 
     def _show_words(self) -> None:
         words = self._content.words
@@ -283,7 +389,12 @@ class LessonPage(Container):
         shown = list(words[self._top : self._top + self._room])
         below = len(words) - self._top - len(shown)
         if below > 0 and shown:
-            shown[-1] = row((f"  ... {below + 1} more lines: {self._content.scrolls_with}", "dim"))
+            shown[-1] = row(
+                (
+                    f"  ... {below + 1} more lines: {self._scroll_keys(is_here=not self._content.is_at_file)}",
+                    "dim",
+                )
+            )
         self._rows("words").show(shown)
 
     def _rows(self, name: str) -> TextRows:

@@ -501,6 +501,11 @@ def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size
     async def small(pilot: Pilot[None]) -> None:
         await seen(pilot, "Write the colour into")
         assert "# mine" not in text(pilot)
+        await pilot.press("tab")
+        await seen(pilot, "# mine")
+        assert "Write the colour into" not in text(pilot)
+        await pilot.press("tab")
+        await seen(pilot, "Write the colour into")
 
     stage(student.screen, scene, size=size)
     stage(student.screen, below)
@@ -508,7 +513,7 @@ def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size
 
 
 @pytest.mark.long
-def test_a_large_terminal_shows_the_world_above_a_short_file_and_then_what_the_program_did(
+def test_a_large_terminal_shows_the_world_below_a_short_file_and_then_what_the_program_did(
     student: Student,
 ) -> None:
     """Also of a check that failed; a still scene does not say that anything is shown again."""
@@ -519,7 +524,7 @@ def test_a_large_terminal_shows_the_world_above_a_short_file_and_then_what_the_p
         await until(pilot, lambda: any(each in text(pilot) for each in ROBOT), "the robot")
         shown = rows(pilot)
         robot = next(number for number, line in enumerate(shown) if any(each in line for each in ROBOT))
-        assert robot < next(number for number, line in enumerate(shown) if " 1 " in line)
+        assert robot > next(number for number, line in enumerate(shown) if line.startswith(" 1 "))
         assert "r restart" not in shown[-1]
         await pilot.press("c")
         await seen(pilot, "[no] It reaches the target")
@@ -557,6 +562,63 @@ def test_few_rows_below_the_words_show_where_the_program_begins(student: Student
         await seen(pilot, begins)
 
     stage(student.screen, scene)
+
+
+LONG_LINE = f"LONGEST = {'7 + ' * 16}7 + 7"
+"""79 columns of code, as many as a line of a program usually has at most."""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)], ids=str)
+def test_a_long_program_is_whole_in_its_width_with_the_world_near_it_before_a_check(
+    student: Student, size: tuple[int, int]
+) -> None:
+    numbered = "".join(f"N{number} = {number}\n" for number in range(60))
+    (student.lesson / "corner" / "starter.py").write_text(f"{LONG_LINE}\n{numbered}{TURNING}")
+    student.goes_to(CORNER)
+    assert len(LONG_LINE) == 79
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: any(each in text(pilot) for each in ROBOT), "the robot")
+        await pilot.press("tab", "home")
+        await seen(pilot, LONG_LINE)
+        seen_lines = {line.split()[0] for line in rows(pilot) if line.strip()}
+        while "N59" not in text(pilot):  # each key goes on, and passes over no line
+            await pilot.press("pagedown")
+            seen_lines |= {line.split()[0] for line in rows(pilot) if line.strip()}
+        assert {str(number) for number in range(1, 62)} <= seen_lines
+        words = text(pilot)
+        await pilot.press("tab")
+        await until(
+            pilot, lambda: "Tab" in text(pilot) and text(pilot) != words, "the task is scrolled again"
+        )
+        assert "N59" in text(pilot), "the program stays where it was scrolled to"
+
+    stage(student.screen, scene, size=size)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(80, 24), (120, 35)], ids=str)
+def test_a_program_that_python_cannot_read_shows_the_line_and_where_it_stops(
+    student: Student, size: tuple[int, int]
+) -> None:
+    student.goes_to(CORNER)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "step 5")
+        file = student.workspace.lessons / "01-colours" / "corner" / "controller.py"
+        text_before = file.read_text()
+        file.write_text(f"{text_before}\nwrong = = 1\n")
+        await seen(pilot, "SyntaxError")
+        if size == (80, 24):
+            await pilot.press("tab")
+        await until(pilot, lambda: any("^ SyntaxError" in line for line in rows(pilot)), "the caret")
+        shown = rows(pilot)
+        at = next(number for number, line in enumerate(shown) if "^ SyntaxError" in line)
+        assert "wrong = = 1" in shown[at - 1]
+        assert shown[at].index("^") == shown[at - 1].index("= 1")
+
+    stage(student.screen, scene, size=size)
 
 
 def steps_row(pilot: Pilot[None]) -> int:
