@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import BinaryIO, Final
 from urllib.parse import unquote
 
+from kit.plain_text import nearest_name
+
 MAX_PARTS: Final = 100_000
 """Files and folders in a folder that the kit works in."""
 
@@ -72,6 +74,18 @@ def is_file_there(file: Path) -> bool:
         return file.is_file()
     except (OSError, ValueError):
         return False
+
+
+def nearest_file(file: Path, *, is_folder: bool = False) -> str:
+    """The path of a file that is there for one that is not: as ``near_file`` finds it, or the one in its folder whose name is
+    nearest. Empty if there is none."""
+    if near := near_file(str(file), is_folder=is_folder):
+        return near
+    with suppress(OSError):
+        names = [each.name for each in file.parent.iterdir() if each.is_dir() == is_folder]
+        if (nearest := nearest_name(file.name, names)) is not None:
+            return str(file.with_name(nearest))
+    return ""
 
 
 def near_file(name: str, folder: Path | None = None, *, is_folder: bool = False) -> str:

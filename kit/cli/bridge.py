@@ -24,6 +24,7 @@ from kit.bridge.shutdown import ShutdownDeadline
 from kit.bridge.wire import BridgeError, BridgeRoute, Direction, DryRunWire, RemoteEndpoint, Wire
 from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress, ZenohWire
 from kit.cli import messages, opening, options
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.ros.world_client import connect_to_world
 from kit.plain_text import escape_controls
 
@@ -34,7 +35,7 @@ DISCOVERY_S: Final = 1.0
 """How long `--list` waits for what the robot tells of itself."""
 
 
-@click.group(name="bridge")
+@click.group(cls=HintingGroup, name="bridge")
 def command() -> None:
     """Connect a running world to a ROS 2 robot: topics and services, both ways.
 

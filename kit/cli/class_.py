@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from kit.cli import messages, report_output
+from kit.cli.lazy_group import HintingGroup
 from kit.plain_text import escape_controls, unknown_name
 from kit.school.form_reading import read_form
 from kit.school.lessons.reading import UnknownLesson, find_lesson
@@ -23,7 +24,7 @@ EMPTY = 1
 """Exit code of ``report``: no file held a student's progress."""
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Report on a class, or print the teacher's guide.
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from kit.plain_files import near_file
+from kit.plain_files import nearest_file
 
 
 class ExistingPath(click.Path):
@@ -21,7 +21,7 @@ class ExistingPath(click.Path):
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter as problem:
-            near = near_file(os.fspath(value), is_folder=not self.file_okay)
+            near = nearest_file(Path(os.fspath(value)), is_folder=not self.file_okay)
             if not near or Path(value).exists():
                 raise
             raise click.BadParameter(f"{problem.message} Did you mean {near}?", ctx, param) from None

@@ -14,6 +14,7 @@ import click
 from kit.cli import messages, options, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import show_screen
+from kit.cli.lazy_group import HintingGroup
 from kit.controllers import find_controller, prepare_workspace
 from kit.run.scenario import Scenario, case_names, find_scenario
 from kit.workspace import WorkspaceError
@@ -44,7 +45,7 @@ _RUNS = click.option(
 _JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Show and test potential fields, also for two robots that drive as one.
 

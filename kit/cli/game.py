@@ -13,7 +13,7 @@ import click
 
 from kit.cli import messages, opening, options, terminal_options
 from kit.cli.full_screen import show_levels, show_screen
-from kit.cli.lazy_group import NamesGroup
+from kit.cli.lazy_group import NamesGroup, or_command
 from kit.cli.shared_game import guest, host
 from kit.controllers import find_controller, prepare_workspace
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
@@ -72,8 +72,12 @@ def _read_summary(journal: ProgressJournal) -> GameSummary:
 def _find_level(name: str) -> GameLevel:
     """The level of a name. Ends the verb for the maze of a day that has not come; raises as ``find_playable_level``."""
     from kit.school.game.daily import DailyLevel, find_playable_level, today
+    from kit.school.game.levels import UnknownLevel
 
-    level = find_playable_level(name)
+    try:
+        level = find_playable_level(name)
+    except UnknownLevel as error:
+        messages.fail(or_command(str(error)))
     if isinstance(level, DailyLevel) and level.day > today():
         messages.fail(f"{level.title} comes on its day.")
     return level

@@ -17,6 +17,7 @@ import click
 
 from kit.cli import messages, options, terminal_options
 from kit.cli.full_screen import show_layers
+from kit.cli.lazy_group import HintingGroup
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
 from kit.layers import explain as words
@@ -120,7 +121,7 @@ def _reading_options(function: Callable[..., None]) -> Callable[..., None]:
     return decorated
 
 
-@click.group(invoke_without_command=True)
+@click.group(cls=HintingGroup, invoke_without_command=True)
 @click.pass_context
 def command(context: click.Context) -> None:
     """Plan collision layers for Flatland worlds. Without a command, open a full screen to build and solve a case.

@@ -15,6 +15,8 @@ from kit.cli.process import BAD_INPUT, INTERRUPTED
 from kit.extensions import Extension, ExtensionError, extensions, load
 from kit.plain_text import nearest_name
 
+_TAKEN: Final = "kit.taken"
+"""Of a context: the path of a group whose word is taken for a name, and the nearest of its commands."""
 Verbs = Mapping[str, tuple[str, str]]
 _HELD: Final = "\ue000"
 """In the place of a hyphen while click wraps a text: it would break an option there."""
@@ -75,7 +77,31 @@ def _prepare(command: click.Command, everywhere: Sequence[click.Option]) -> clic
     return command
 
 
-class LazyGroup(click.Group):
+class HintingGroup(click.Group):
+    """A group that tells which of its commands a word that is none may mean."""
+
+    absent: Mapping[str, str] = MappingProxyType({})
+    """Commands that users may try, and why there are none."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError:
+            path = ctx.command_path
+            if args[0] in self.absent:
+                raise click.UsageError(
+                    f"There is no `{path} {args[0]}`: {self.absent[args[0]]}", ctx
+                ) from None
+            near = nearest_name(args[0], self.list_commands(ctx))
+            hint = f" Did you mean `{path} {near}`?" if near else ""
+            raise click.UsageError(
+                f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the commands.", ctx
+            ) from None
+
+
+class LazyGroup(HintingGroup):
     """A group that imports a verb's module when the verb is used, and lists the verbs without importing any."""
 
     context_class = CommandContext
@@ -95,7 +121,7 @@ class LazyGroup(click.Group):
         super().__init__(*arguments, **options)
         self._verbs = verbs
         self._has_others = has_others
-        self._absent = absent
+        self.absent = absent
         self._everywhere = everywhere
 
     def _extension_commands(self) -> dict[str, Extension]:
@@ -124,23 +150,6 @@ class LazyGroup(click.Group):
             return None if other is None else _prepare(_command_of(other), self._everywhere)
         module, _, name = self._verbs[cmd_name][0].partition(":")
         return _prepare(getattr(import_module(module), name or "command"), self._everywhere)
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        try:
-            return super().resolve_command(ctx, args)
-        except click.UsageError:
-            path = ctx.command_path
-            if args[0] in self._absent:
-                raise click.UsageError(
-                    f"There is no `{path} {args[0]}`: {self._absent[args[0]]}", ctx
-                ) from None
-            near = nearest_name(args[0], self.list_commands(ctx))
-            hint = f" Did you mean `{path} {near}`?" if near else ""
-            raise click.UsageError(
-                f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the commands.", ctx
-            ) from None
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """The verbs that begin so, without importing any, and the options."""
@@ -182,7 +191,17 @@ def _command_of(extension: Extension) -> click.Command:
     raise UnusablePart(f"The verb {extension.name} of {extension.source} is no click command.")
 
 
-class NamesGroup(click.Group):
+def or_command(message: str) -> str:
+    """The message about a name that nothing has, with the group's own command that a word in its place may mean."""
+    path, near = click.get_current_context().meta.get(_TAKEN, ("", None))
+    if not path:
+        return message
+    return (
+        f"{message} Or is it `{path} {near}`?" if near else f"{message} `{path} --help` lists the commands."
+    )
+
+
+class NamesGroup(HintingGroup):
     """A group that may also be given a name, such as a map's, which its command ``taker`` takes."""
 
     taker: click.Command | None = None
@@ -192,6 +211,7 @@ class NamesGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
             taker = self.taker
+            ctx.meta[_TAKEN] = ctx.command_path, nearest_name(args[0], self.list_commands(ctx))
             assert taker is not None  # each such group has one
             return taker.name, taker, args
         return super().resolve_command(ctx, args)

@@ -15,6 +15,7 @@ import click
 from kit.cli import messages, options, terminal_options
 from kit.cli.executor_options import executor_options
 from kit.cli.full_screen import show_screen
+from kit.cli.lazy_group import HintingGroup
 from kit.controllers import find_controller, prepare_workspace
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable, read_shard
@@ -49,7 +50,7 @@ def _open_league(context: click.Context) -> Iterator[tuple[League, Workspace]]:
         messages.fail(str(error))
 
 
-@click.group(invoke_without_command=True)
+@click.group(cls=HintingGroup, invoke_without_command=True)
 @options.workspace
 @click.option(
     "--folder",

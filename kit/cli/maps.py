@@ -16,7 +16,7 @@ from kit.cli import messages, options, terminal_options
 from kit.cli.dialogue import run_dialogue
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
-from kit.cli.lazy_group import NamesGroup
+from kit.cli.lazy_group import NamesGroup, or_command
 from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
@@ -111,7 +111,9 @@ def show(name: str, glyphs: str | None) -> None:
     try:
         own = None if name in map_names() else _own_card_of(name, own_card, WORLD_FILE)
         _show_card(own or find_map(name), glyphs)
-    except (UnknownMap, WorldError) as error:
+    except UnknownMap as error:
+        messages.fail(or_command(str(error)))
+    except WorldError as error:
         messages.fail(str(error))
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import shutil
 import sys
+from pathlib import Path
 from typing import NoReturn
 
 import click
 
 from kit.cli.process import BAD_INPUT, NO_ROOM, describe_no_room
+from kit.plain_files import nearest_file
 from kit.plain_text import escape_controls, wrap
 
 SENTENCE_WIDTH = 78
@@ -51,7 +53,10 @@ def describe_os_error(error: OSError) -> str:
         raise error
     if error.errno in NO_ROOM:
         return describe_no_room(error)
-    return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
+    if not error.filename or not error.strerror:
+        return str(error)
+    near = nearest_file(Path(error.filename)) if isinstance(error, FileNotFoundError) else ""
+    return f"{error.filename}: {error.strerror}" + (f". Did you mean {near}?" if near else "")
 
 
 def describe_error(error: Exception) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 
 from kit.cli import messages, opening, options
+from kit.cli.lazy_group import HintingGroup
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text
 from kit.document.layout import lines_of
 from kit.document.rows import row_text
@@ -34,7 +35,7 @@ def _open_journal(workspace: Path | None) -> Iterator[ProgressJournal]:
         messages.fail(str(error))
 
 
-@click.group(invoke_without_command=True)
+@click.group(cls=HintingGroup, invoke_without_command=True)
 @options.workspace
 @click.pass_context
 def command(context: click.Context, workspace: Path | None) -> None:

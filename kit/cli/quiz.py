@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 import click
 
@@ -35,6 +36,8 @@ from kit.school.quiz.quiz_text import (
 from kit.school.quiz.schedule import build_schedule
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
+
+FLAGS: Final = ("today", "scores", "again", "plain")
 
 
 @click.command()
@@ -73,6 +76,8 @@ def command(
     """
     if sum((lesson is not None, today, scores)) > 1:
         raise click.UsageError("Give only one of LESSON, --today and --scores.")
+    if lesson in FLAGS:
+        raise click.UsageError(f"It is `kit quiz --{lesson}`.")
     terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     bank = _read_bank()
     if scores:

@@ -14,6 +14,7 @@ from kit.cli.full_screen import show_screen
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.training.run_folders import find_run
+from kit.plain_files import nearest_file
 from kit.plain_text import counted, escape_controls
 from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording
 from kit.run.recording import Recording, RecordingError, load_recording, rerun
@@ -105,6 +106,13 @@ def command(
     try:
         recording = load_recording(file)
         scenario = _scenario(recording, file, root)
+    except FileNotFoundError:
+        near = nearest_file(file)
+        hint = f": did you mean {near}?" if near else "."
+        messages.fail(
+            f"There is no recording {file}{hint} `kit run --record FILE` makes one; drives of the game are shown by "
+            "`kit game replay LEVEL`, matches by `kit league replay NUMBER`."
+        )
     except (RecordingError, LookupError, WorldError, CannotShare) as error:
         messages.fail(str(error))
     except OSError as error:

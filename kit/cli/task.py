@@ -11,6 +11,7 @@ import click
 
 from kit.cli import learning_options, messages, terminal_options
 from kit.cli.existing_path import ExistingPath
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.output_file import OutputFile
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
@@ -38,7 +39,7 @@ from kit.school.game.levels import GameLevel, UnknownLevel, find_level
 from kit.school.game.task_levels import race_command, race_refusals
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Define your own task: a YAML file with start, target, observations, actions and reward.
 

@@ -9,6 +9,7 @@ import click
 
 from kit.cli import options
 from kit.cli.existing_path import ExistingPath
+from kit.cli.lazy_group import HintingGroup
 from kit.plain_files import near_file
 from kit.plain_text import counted
 from kit.sim.plugins import plugin_readers, world_plugin_readers
@@ -18,7 +19,7 @@ from kit.world.problems import Problem, WorldError
 from kit.world.report import world_report, world_report_data
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Check a world: errors, which models collide, what each laser sees."""
 

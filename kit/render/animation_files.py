@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
+from typing import Final
 
 import numpy as np
 
@@ -78,6 +79,8 @@ def _graphic_codes(foreground: RoleStyle, background: RoleStyle) -> str:
 
 
 _NOWHERE = "M0 0"
+LEAST_RADIUS: Final = 2.0
+"""Of a disc [pixels]."""
 _DASHES: Mapping[LineStyle, str] = {
     "solid": "",
     "dashed": "6 3",
@@ -128,7 +131,7 @@ def svg_animation(
 ) -> str:
     """The whole file: walls, targets and robots' ways as lines, and every body moving, again and again.
 
-    ``scenes``: ``interval_s`` seconds apart; walls and targets are those of the first. ``size``: at most this wide
+    ``scenes``: ``interval_s`` seconds apart; walls are those of the first. ``size``: at most this wide
     and high [pixels], as the world's shape asks for. ValueError without a scene.
 
     >>> svg_animation([Scene(), Scene()], 0.1)[:4]
@@ -146,7 +149,15 @@ def svg_animation(
         f"<title>{escape(title)}</title>",
         f'<rect width="{width}" height="{height}" fill="{drawing.color(Role.EMPTY)}"/>',
         *(drawing.way(way, number) for number, way in enumerate(_driven_paths(shown))),
-        *(drawing.target(target) for target in first.targets),
+        *(
+            line
+            for target in dict.fromkeys(target for scene in shown for target in scene.targets)
+            for line in drawing.moving(
+                [drawing.disc(*target) if target in scene.targets else _NOWHERE for scene in shown],
+                duration_s,
+                drawing.target_style,
+            )
+        ),
         f'<path d="{drawing.segments(first.walls)}" stroke="{drawing.color(Role.WALL)}" stroke-width="1.5"/>',
     ]
     for model, robot in _numbered_models(shown):
@@ -210,18 +221,24 @@ class _Drawing:
         return f'<path d="{lines}" stroke="{self.color(Role.CONTACT)}" stroke-width="2.5"/>'
 
     def target(self, target: Disc) -> str:
-        x, y = self._path_point(target.x, target.y).split()
-        radius = max(2.0, target.radius * self._scale)
-        return f'<circle cx="{x}" cy="{y}" r="{radius:.1f}" stroke="{self.color(Role.TARGET)}" stroke-width="2"/>'
+        return f'<path d="{self.disc(*target)}" {self.target_style}/>'
+
+    @property
+    def target_style(self) -> str:
+        return f'stroke="{self.color(Role.TARGET)}" stroke-width="2"'
+
+    def disc(self, x: float, y: float, radius: float) -> str:
+        """The shape of a disc that is no smaller than can be seen."""
+        radius = max(radius, LEAST_RADIUS / self._scale)
+        r = f"{radius * self._scale:.1f}"
+        left, right = self._path_point(x - radius, y), self._path_point(x + radius, y)
+        return f"M{left}A{r} {r} 0 1 0 {right}A{r} {r} 0 1 0 {left}Z"
 
     def outline(self, body: SceneBody) -> str:
         if not all(np.isfinite(body.pose)):
             return _NOWHERE
         shapes = [self.line(polygon) + "Z" for polygon in body.polygons]
-        for x, y, radius in body.discs:
-            r = f"{radius * self._scale:.1f}"
-            left, right = self._path_point(x - radius, y), self._path_point(x + radius, y)
-            shapes.append(f"M{left}A{r} {r} 0 1 0 {right}A{r} {r} 0 1 0 {left}Z")
+        shapes += [self.disc(x, y, radius) for x, y, radius in body.discs]
         return "".join(shapes) or _NOWHERE
 
     def heading(self, body: SceneBody) -> str:

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
 
-from kit.plain_files import read_plain_file
+from kit.plain_files import nearest_file, read_plain_file
 from kit.school.progress import FORMAT, VERSION, YEARS, EventKind, ProgressError, ProgressEvent
 
 MAX_EXPORT_BYTES: Final = 5_000_000
@@ -19,7 +19,9 @@ def read_export(file: Path) -> list[ProgressEvent]:
     try:
         content = json.loads(read_plain_file(file, MAX_EXPORT_BYTES).decode())
     except OSError as error:
-        raise ProgressError(f"{file}: cannot be read ({error.strerror}).") from None
+        near = nearest_file(file) if isinstance(error, FileNotFoundError) else ""
+        hint = f" Did you mean {near}?" if near else ""
+        raise ProgressError(f"{file}: cannot be read ({error.strerror}).{hint}") from None
     except (ValueError, RecursionError) as error:
         raise ProgressError(f"{file}: is not an export of progress, or is cut off ({error}).") from None
     if (

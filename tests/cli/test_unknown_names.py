@@ -6,6 +6,8 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
+from kit.school.game.challenges import find_challenge
+from kit.school.game.levels import find_level
 
 NEAR = {
     "game frist-drive": '"first-drive"',
@@ -27,10 +29,22 @@ FAR = {
     "train qqq": "kit train --list",
     "glossary qqqq": "kit glossary",
 }
+COMMANDS = {
+    "game leaderbord": "kit game leaderboard",
+    "maps shw": "kit maps show",
+    "task shw": "kit task show",
+    "league submt": "kit league submit",
+    "progress exprt": "kit progress export",
+    "quiz today": "kit quiz --today",
+    "replay nothing": "kit game replay LEVEL",
+}
+"""What was typed, and the command that is offered."""
 
 
 def told(folder: Path, words: str) -> str:
-    found = CliRunner().invoke(main, words.split(), env={"KIT_WORKSPACE": str(folder), "TERM": "dumb"})
+    found = CliRunner().invoke(
+        main, words.split(), prog_name="kit", env={"KIT_WORKSPACE": str(folder), "TERM": "dumb"}
+    )
     assert found.exit_code == 2
     return f"{found.output}{found.exception or ''}"
 
@@ -47,3 +61,20 @@ def test_what_lists_them_is_named_where_none_is_near(words: str, tmp_path: Path)
     text = told(tmp_path, words)
     assert "There is no " in text
     assert f"`{FAR[words]}` lists them" in " ".join(text.split())
+
+
+@pytest.mark.parametrize("words", COMMANDS)
+def test_the_command_that_is_meant_is_offered(words: str, tmp_path: Path) -> None:
+    assert f"`{COMMANDS[words]}`" in " ".join(told(tmp_path, words).split())
+
+
+@pytest.mark.parametrize("words", ["replay drve.npz", "progress import drve.npz"])
+def test_the_nearest_file_is_offered(words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "drive.npz").touch()
+    monkeypatch.chdir(tmp_path)
+    assert "id you mean drive.npz?" in " ".join(told(tmp_path, words).split())
+
+
+def test_titles_are_names_too() -> None:
+    assert find_level("Left turn").id == "left-turn"
+    assert find_challenge("a free lunch").id == "free-lunch"

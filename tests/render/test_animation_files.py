@@ -97,6 +97,19 @@ def test_a_body_that_comes_later_is_nowhere_before() -> None:
     assert "A" in after
 
 
+def test_a_target_is_shown_while_it_is_one() -> None:
+    first, second = Disc(1, 1, 0.2), Disc(3, 1, 0.2)
+    scenes = [
+        Scene(WALLS, (robot(Pose(1, 1, 0)),), targets=targets) for targets in ((first, second), (second,), ())
+    ]
+    tree = ET.fromstring(svg_animation(scenes, 0.1))
+    shown = [each.attrib["values"].split(";") for each in tree.findall(f"{SVG}path/{SVG}animate")]
+    assert [[shape != "M0 0" for shape in each] for each in shown] == [
+        [True, False, False],
+        [True, True, False],
+    ]
+
+
 def test_no_scenes_make_no_file() -> None:
     with pytest.raises(ValueError, match="no scenes"):
         svg_animation([], 0.1)

@@ -96,7 +96,7 @@ def sweep_table(rows: Sequence[SweepRow]) -> Table:
         Column("success", decimals=3),
         Column("worst", decimals=3),
         Column("steps"),
-        Column("minutes", decimals=1, is_optional=True),
+        Column("minutes", decimals=2, is_optional=True),
     ]
     own = tuple(dict.fromkeys(name for row in rows for each in row.results for name in each.metrics))
     columns += [Column(name, decimals=2) for name in own]

@@ -53,11 +53,12 @@ def _read_challenges(section: Section, folder: Path) -> Iterator[Challenge]:
 
 
 def find_challenge(name: str) -> Challenge:
-    """Finds a challenge by its id. Raises LookupError that offers the nearest one."""
-    known = {each.id: each for each in all_challenges()}
-    if name not in known:
-        raise LookupError(unknown_name("puzzle", name, tuple(known), "kit game puzzle"))
-    return known[name]
+    """Finds a challenge by its id or its title. Raises LookupError that offers the nearest one."""
+    challenges = all_challenges()
+    for each in challenges:
+        if name.casefold() in (each.id, each.title.casefold()):
+            return each
+    raise LookupError(unknown_name("puzzle", name, [each.id for each in challenges], "kit game puzzle"))
 
 
 def answers_folder(workspace: Workspace) -> Path:

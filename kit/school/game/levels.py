@@ -233,10 +233,10 @@ def opened_levels_text(levels: tuple[GameLevel, ...]) -> str:
 
 
 def find_level(name: str) -> GameLevel:
-    """Finds a level by its id or its number, counted from 1. Raises UnknownLevel."""
+    """Finds a level by its id, its title or its number, counted from 1. Raises UnknownLevel."""
     levels = all_levels()
     for number, level in enumerate(levels, 1):
-        if name in (level.id, str(number)):
+        if name.casefold() in (level.id, level.title.casefold(), str(number)):
             return level
     ids = [level.id for level in levels]
     raise UnknownLevel(unknown_name("level", name, ids, "kit game"))
