@@ -108,6 +108,10 @@ class Dialogue:
         """What is shown now. A screen shows all of it, line by line only what is new is said."""
         raise NotImplementedError
 
+    def possible_blocks(self) -> Sequence[Sequence[Block]]:
+        """All that ``blocks`` may come to be at this place: what a screen shows below them keeps its place."""
+        return ()
+
     @property
     def has_panels(self) -> bool:
         """Whether ``panels`` gives any now."""
@@ -115,7 +119,7 @@ class Dialogue:
 
     def panels(self) -> Sequence[Panel]:
         """What a screen shows to the right of the others where it is wide enough, else at its bottom, as many as there is room
-        for, the last one cut where it must be; line by line they are not said. At the bottom the first is the lowest."""
+        for, the last one cut where it must be; line by line they are not said. Where all are at the bottom the first is the lowest."""
         return ()
 
     @property
@@ -124,7 +128,7 @@ class Dialogue:
         return None
 
     def figure(self) -> Panel | None:
-        """What such a screen shows there instead of the picture, where it has room; None: nothing."""
+        """What such a screen shows below the picture, before all panels there; None: nothing."""
         return None
 
     def arrival_blocks(self) -> Sequence[Block]:

@@ -121,6 +121,12 @@ class FormDialogue(Dialogue):
         question = self.session.question
         if question is None:
             return (Text(self.session.closing_text if self._has_asked else self.session.answered_text),)
+        return self._question_blocks(question)
+
+    def possible_blocks(self) -> Sequence[Sequence[Block]]:
+        return [self._question_blocks(each) for each in self.session.questions]
+
+    def _question_blocks(self, question: SurveyQuestion) -> Sequence[Block]:
         lead = [Text(question.group_text)] if question.group_text else []
         return (*lead, Text(question.text, Tone.BOLD), *self._answer_blocks(question))
 

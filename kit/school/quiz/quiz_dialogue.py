@@ -80,6 +80,11 @@ _TONES: Final = {
 }
 
 
+def _confidence_line() -> KeyLine:
+    choices = tuple(Choice(str(number), text) for number, text in CONFIDENCE_CHOICES)
+    return KeyLine(CONFIDENCE_QUESTION, choices)
+
+
 class QuizDialogue(Dialogue):
     """Asks what a session has ahead."""
 
@@ -141,15 +146,25 @@ class QuizDialogue(Dialogue):
         item = self.item
         if item is None or self.is_over:
             return closing_blocks(self.session)
-        shown: list[Block] = [Text(item.question)]
-        shown += [Picture(tuple(item.picture))] if item.picture else []
-        shown += self._options(item)
+        shown = self._question_blocks(item)
         if self.stage is QuizStage.CHOSEN:
-            choices = tuple(Choice(str(number), text) for number, text in CONFIDENCE_CHOICES)
-            shown.append(KeyLine(CONFIDENCE_QUESTION, choices))
+            shown.append(_confidence_line())
         elif self.stage is QuizStage.TOLD and self.choice is not None:
             shown += self._feedback(item, self.choice)
         return shown
+
+    def _question_blocks(self, item: QuizItem) -> list[Block]:
+        shown: list[Block] = [Text(item.question)]
+        shown += [Picture(tuple(item.picture))] if item.picture else []
+        return [*shown, *self._options(item)]
+
+    def possible_blocks(self) -> Sequence[Sequence[Block]]:
+        item = self.item
+        if item is None or self.is_over:
+            return ()
+        asked = self._question_blocks(item)
+        choices = (NOT_SURE, BLANK, *map(AnswerChoice, range(len(item.options))))
+        return [[*asked, _confidence_line()], *([*asked, *self._feedback(item, each)] for each in choices)]
 
     has_panels = True
 
@@ -182,14 +197,13 @@ class QuizDialogue(Dialogue):
         )
 
     def _lesson_panels(self, item: QuizItem) -> list[Panel]:
-        """What the lesson of a question is about, and where nothing of it moves, a picture of another step than the one that teaches
-        the answer."""
+        """What the lesson of a question is about, and a picture of another step than the one that teaches the answer."""
         taught = self._taught_by(item)
         if taught is None:
             return []
         lesson, step = taught
         pictured = next((each for each in lesson.steps if each.picture and each is not step), None)
-        if pictured is None or self.scene_shown is not None:
+        if pictured is None:
             return [about_lesson(lesson)]
         title = f"lesson {lesson.number}, step {pictured.number}: {pictured.title}"
         picture = Picture(tuple(pictured.picture.splitlines()))

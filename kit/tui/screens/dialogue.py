@@ -18,6 +18,7 @@ from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, fitted, row, text_width, window
+from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.records import GraphScene, LearningScene, LessonScene
 from kit.tui.loop_calls import called_in_loop
 from kit.tui.rows.key_rows import FOOTER_ROWS, footer
@@ -48,10 +49,10 @@ ROOMY_ROWS: Final = 36
 """A screen with no fewer rows has room for empty ones between choices."""
 ROWS_AROUND: Final = 2 + FOOTER_ROWS
 """Rows of the heading, the remark and the keys."""
-ROWS_FOR_MORE: Final = 3
-"""Rows that are kept free above the picture for what is asked next."""
 LEAST_PICTURE, MOST_PICTURE = 9, 25
-"""Rows of the picture below the question, of messages the least; where there are fewer it is left out."""
+"""Rows of the picture below the question; where there are fewer it is left out."""
+ROWS_BELOW_PICTURE: Final = 12
+"""Rows that it leaves free below it, where it has its least ones all the same."""
 POLL_S: Final = 0.2
 """Seconds between two looks whether something has happened by itself."""
 SCROLLS: Final = {
@@ -109,9 +110,9 @@ class DialogueScreen(RowsScreen[None]):
         """The two that show scenes; None: the dialogue has none."""
         self._shown_scene: object = None
         """The one that is shown, or will be."""
-        self._picture_rows = 0
-        self._measured: object = None
-        """For which question, on a screen of which size, the picture has so many rows."""
+        self._kept_rows = 0
+        self._kept_for: object = None
+        """For which question, on a screen of which size, so many rows are kept for what is said of it."""
         self._placed: tuple[int, int, bool] | None = None
         """Columns of the question, rows of the picture and whether there are panels, as the screen was last laid out."""
 
@@ -125,13 +126,14 @@ class DialogueScreen(RowsScreen[None]):
 
                     self._field = AnswerField()
                     yield self._field
-                    yield TextRows(id="below")
                 if self.dialogue.has_scenes:
                     theme = cast("KitApp", self.app).kit_theme
                     self._world = WorldView(lambda: theme.encoder, theme.palette)
                     self._playback = PlaybackSceneView(theme)
                     yield self._world
                     yield self._playback
+                if self._field is not None or self._world is not None:
+                    yield TextRows(id="below")
             yield TextRows(id="panels")
         yield TextRows(id="remark")
         yield TextRows(id="keys")
@@ -170,38 +172,57 @@ class DialogueScreen(RowsScreen[None]):
 
     def _show_body(self) -> None:
         whole, room = self._body(), self._body_room
-        figure = self._figure(room - len(whole))
-        whole += figure
-        picture = self._fitting_picture(room - len(whole))
+        picture = self._fitting_picture(room - self._kept(whole))
         if picture:
             self._show_scene()
         self._lay_out(picture)
         self._show_field()
-        body, self._top = window(whole, self._top, room - picture)
-        body = centred(body, self.room.width, room, self._whole, is_at_top=self._has_panels)
-        # An empty row is above a remark that stands there always.
-        body += self._panels_below(room - picture - len(body) - (self.dialogue.note is not None))
-        height = len(body) if self._field is not None and self._field.display else "1fr"
+        is_typed = self._field is not None and self._field.display
+        shown, self._top = window(whole, self._top, room)
+        body = centred(shown, self.room.width, room, self._whole, is_at_top=self._has_panels)
+        below = self._below(len(shown), picture)
+        if not picture:
+            body += below
+        height = len(shown) if is_typed else self._kept(whole) if picture else "1fr"
         if height != self._body_height:  # setting a style lays out and paints the whole screen
             self._body_height = self._rows("body").styles.height = height
         self._rows("body").show(body)
+        if picture:
+            self._rows("below").show(below)
         if self._has_panels:
             beside = [each for each in self.dialogue.panels() if not each.is_below]
             self._rows("panels").show(panel_rows(beside, self._beside - MARGIN, room))
 
-    def _panels_below(self, left: int) -> list[Row]:
-        """The panels at the bottom, all of them where the screen has no columns for them, and the empty rows above. ``left``:
-        rows."""
-        if (
-            self.dialogue.entry is not None or not self.dialogue.has_panels
-        ):  # the field stands below the question
+    def _kept(self, whole: Sequence[Row]) -> int:
+        """Rows of the question, with those that are kept free for what may be said of it. ``whole``: as it is now."""
+        shown_for = self.room, self.dialogue.place
+        if shown_for != self._kept_for:
+            possible = self.dialogue.possible_blocks() if self._has_panels else ()
+            lengths = (len(rows_of(each, self._text_page)) + 1 for each in possible)
+            self._kept_for, self._kept_rows = shown_for, max(lengths, default=0)
+        return max(self._kept_rows, len(whole))
+
+    def _below(self, used: int, picture: int) -> list[Row]:
+        """What stands below the question, or below its picture: the figure and the panels that belong there. All panels where the
+        screen has no columns for them, then at its bottom. ``used``: rows of the question."""
+        dialogue, room = self.dialogue, self._body_room
+        # The field stands below the question.
+        if dialogue.entry is not None or not dialogue.has_panels:
             return []
-        indent = self._left + MARGIN
         width = text_width(self.room.width, self._widest - 2 * MARGIN)
-        panels = [each for each in self.dialogue.panels() if each.is_below or not self._has_panels]
-        shown = panel_rows(panels, width, left - 1, upwards=True)
-        blank = [row()] * (left - len(shown)) if shown else []
-        return [*blank, *(row(" " * indent, *each) if each else each for each in shown)]
+        # An empty row is above a remark that stands there always.
+        room -= dialogue.note is not None
+        if self._has_panels:
+            kept = max(used, self._kept_rows)
+            figure = dialogue.figure()
+            panels = [each for each in dialogue.panels() if each.is_below]
+            shown = panel_rows([*([figure] if figure else []), *panels], width, room - kept - picture)
+            blank = 0 if picture else kept - used
+        else:
+            shown = panel_rows(dialogue.panels(), width, room - used - 1, upwards=True)
+            blank = room - used - len(shown)
+        indent = " " * (self._left + MARGIN)
+        return [*[row()] * blank, *(row(indent, *each) if each else each for each in shown)] if shown else []
 
     def _lay_out(self, picture: int) -> None:
         """Gives the question, its picture and the panels their places, where these have changed."""
@@ -223,6 +244,7 @@ class DialogueScreen(RowsScreen[None]):
             view.styles.height = rows
             view.styles.margin = (0, MARGIN, 0, self._left + MARGIN)
             rows = 0 if is_shown else rows
+        self._rows("below").display = self._placed is not None and self._placed[1] > 0
 
     def _show_scene(self) -> None:
         """Reads the scene that belongs to the question: what is played at once, a world in another thread."""
@@ -240,14 +262,6 @@ class DialogueScreen(RowsScreen[None]):
     async def _read_world(self, picture: WorldView, scene: LessonScene) -> None:
         picture.show(await to_thread(scene_of_place, scene))
 
-    def _figure(self, room: int) -> list[Row]:
-        """What stands below the question in place of the picture, indented as the question is. ``room``: rows."""
-        figure = self.dialogue.figure() if self._has_panels else None
-        if figure is None:
-            return []
-        width = text_width(self.room.width, self._widest - 2 * MARGIN)
-        return [row(" " * MARGIN, *each) if each else each for each in panel_rows([figure], width, room)]
-
     def _body(self) -> list[Row]:
         return [row(), *rows_of(self.dialogue.blocks(), self._text_page)]
 
@@ -256,15 +270,13 @@ class DialogueScreen(RowsScreen[None]):
         return max(1, self.room.height - ROWS_AROUND)
 
     def _fitting_picture(self, left: int) -> int:
-        """Rows of the picture below the question: as many as there were at first, and fewer once the words leave fewer; 0 where
-        there is no room. ``left``: rows without words."""
-        place = self.room, self.dialogue.place
-        if place != self._measured:
-            most = LEAST_PICTURE if isinstance(self.dialogue.scene_shown, GraphScene) else MOST_PICTURE
-            self._measured, self._picture_rows = place, min(most, left - ROWS_FOR_MORE)
-        rows = min(self._picture_rows, left - 1)
-        has_picture = self._has_panels and self.dialogue.scene_shown is not None
-        return rows if has_picture and rows >= LEAST_PICTURE else 0
+        """Rows of the picture below the question; 0 where there is no room. ``left``: rows that nothing is said in."""
+        scene = self.dialogue.scene_shown if self._has_panels else None
+        if isinstance(scene, GraphScene):
+            rows = len(graph_rows(scene, at_end=False))
+            return rows if rows + ROWS_BELOW_PICTURE <= left else 0
+        rows = min(MOST_PICTURE, max(left - ROWS_BELOW_PICTURE, LEAST_PICTURE))
+        return rows if scene is not None and rows <= left else 0
 
     @property
     def _has_panels(self) -> bool:
@@ -328,10 +340,11 @@ class DialogueScreen(RowsScreen[None]):
         return at_both_edges(title, row((position, "dim")), self.room.width) if position else title
 
     def _remark(self) -> Row:
+        margin = MARGIN + (self._left if self._has_panels else 0)
         if self.turn.remark is not None:
-            return row((f"  {self.turn.remark.text}", self.turn.remark.tone))
+            return row((" " * margin + self.turn.remark.text, self.turn.remark.tone))
         note = self.dialogue.note
-        return row() if note is None else rows_of([note], Page(1000, MARGIN))[0]
+        return row() if note is None else rows_of([note], Page(1000, margin))[0]
 
     def _keys(self) -> Row:
         dialogue, possible = self.dialogue, {each.id: each for each in self.turn.possible()}

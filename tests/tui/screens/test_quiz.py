@@ -22,6 +22,8 @@ from tests.kit_content import kit_bank, kit_lesson
 from tests.tui.lesson_stage import ROBOT, rows, seen, stage, text, until
 
 BANK = kit_bank()
+ROWS_OF_AN_EXPLANATION = 14
+"""More than what is said to any answer takes on a large screen."""
 Scene = Callable[[DialogueScreen, Pilot[None]], Awaitable[None]]
 
 
@@ -288,12 +290,49 @@ def test_what_was_answered_before_stands_below_the_next_question_with_the_reason
     play(scene, progress, lesson="25-generalisation", size=size)
 
 
+@pytest.mark.parametrize("lesson", ["01-drive", "02-nodes-and-topics", "25-generalisation"])
+def test_what_stands_below_the_answers_begins_where_the_longest_explanation_ends_and_stays_there(
+    progress: ProgressJournal, lesson: str
+) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        item = quiz(screen).item
+        assert item is not None
+        title = f"── lesson {kit_lesson(item.lesson).number}, "
+
+        def below() -> int:
+            """The row of what is told of the lesson: of the lesson itself, or the step of it that teaches the answer."""
+            return next((number for number, line in enumerate(rows(screen)) if title in line), 0)
+
+        await until(pilot, below, "the lesson")
+        answers = [
+            next(number for number, line in enumerate(rows(screen)) if each.text[:20] in line)
+            for each in item.options
+        ]
+        at, view = below(), screen.query_one(WorldView)
+        picture = view.region
+        empty = [not line[:90].strip() for line in rows(screen)[answers[-1] : at]]
+        assert not picture.height or picture.y > answers[-1]
+        assert sum(empty) - picture.height < ROWS_OF_AN_EXPLANATION
+        await pilot.press("1")
+        assert below() == at
+        await pilot.press("2")
+        await until(pilot, lambda: "See lesson" in text(pilot), "the explanation")
+        assert (below(), view.region) == (at, picture)
+        assert [
+            next(number for number, line in enumerate(rows(screen)) if each.text[:20] in line)
+            for each in item.options
+        ] == answers
+
+    play(scene, progress, lesson=lesson, size=(200, 50))
+
+
 def test_no_panel_is_wider_than_its_column(progress: ProgressJournal) -> None:
     async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         for _ in range(3):
-            width = screen._beside - MARGIN
-            shown = panel_rows(quiz(screen).panels(), width, 1000)
-            assert [row_text(each) for each in shown if row_width(each) > width] == []
+            for columns, is_below in ((screen._beside - MARGIN, False), (screen._widest - MARGIN, True)):
+                panels = [each for each in quiz(screen).panels() if each.is_below is is_below]
+                shown = panel_rows(panels, columns, 1000)
+                assert [row_text(each) for each in shown if row_width(each) > columns] == []
             await pilot.press("1", "2", "n")
 
     play(scene, progress, lesson="20-q-learning", size=(120, 35))
