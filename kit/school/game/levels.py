@@ -171,6 +171,11 @@ class GameLevel:
     rules: ExtraRules = ExtraRules()
 
     @property
+    def skill_sentence(self) -> str:
+        """The skill without which it is not finished; empty where none is known."""
+        return f"It takes {self.skill}." if self.skill else ""
+
+    @property
     def lesson_number(self) -> str:
         """The number of the lesson that opens it, ``A2``; empty for none."""
         return lesson_number(self.opened_by_lesson) if self.opened_by_lesson else ""

@@ -20,7 +20,7 @@ from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.race import STUCK_TIME, DriverKind, RaceFinish
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
-from kit.tui.rows.medal_signs import NO_STAR, STAR
+from kit.tui.rows.medal_signs import STAR
 from kit.tui.rows.ruled_title import ruled_title
 
 LEAST_CURVE_ROWS, HIGHEST_CURVE = 4, 22
@@ -72,19 +72,15 @@ def ending(level: GameLevel, finish: RaceFinish, width: int) -> list[Row]:
 def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord, width: int) -> list[Row]:
     """The medal and the stars of a drive, in the order in which they appear, in rows of at most ``width`` columns."""
     if record.is_shipped:
-        return [
-            row(
-                (f"   {NO_STAR} ", "dim"), "a controller of the kit drove: it shows the way and earns nothing"
-            )
-        ]
+        return [row(" " * MARK, "a controller of the kit drove: it shows the way and earns nothing")]
     if record.is_practice:
-        return [row((f"   {NO_STAR} ", "dim"), "practice: the first run of the day has counted")]
+        return [row(" " * MARK, "practice: the first run of the day has counted")]
     if not level.has_medals:
         return [row(("   your best time so far", "good"))] if record.is_best else []
     if not finish.reached:
-        needed = f"skill: {level.skill}" if level.skill and finish.failure is None else ""
+        needed = level.skill_sentence if finish.failure is None else ""
         skill = [row(" " * MARK, each) for each in wrap(needed, width - MARK) if each]
-        return [row((f"   {NO_STAR} ", "dim"), ("no medal yet", "dim")), *skill]
+        return [row(" " * MARK, ("no medal yet", "dim")), *skill]
     rows = [medal_row(record.medal, is_new=record.medal > record.previous_medal)]
     for rule in record.rules:
         new = " (new)" if rule in record.new_rules else ""

@@ -6,11 +6,12 @@ import math
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 from kit.document.rows import Row, fitted, row, row_text, side_by_side
 from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
-from kit.tui.rows.readout_rows import message_rows
+from kit.tui.rows.readout_rows import PANEL_WIDTH, message_rows
 from kit.tui.rows.ruled_title import ruled_title
 
 if TYPE_CHECKING:
@@ -32,6 +33,10 @@ CARD_WIDTH, CODE_WIDTH = 60, 92
 """Columns that a card and a program's code have a use for."""
 ENOUGH: Final = 0.75
 """The share of them with which they stand beside the instruments."""
+TWO_COLUMNS: Final = 40
+"""Columns of a panel from which on its figures stand in two columns."""
+BY_WORTH: Final = ("speed", "drive", "nearest", "key mode (z)", "pose")
+"""Titles of blocks of figures, the one that is left out last before the others."""
 CHARTS: Final = 3
 HIGHEST_CHART: Final = 10
 """Rows of a chart below which nothing else stands."""
@@ -49,6 +54,8 @@ class PanelWidths:
 
     instruments: int = 0
     beside: int = 0
+    plain: int = PANEL_WIDTH
+    """Of a panel without instruments, with its margin."""
 
     @property
     def total(self) -> int:
@@ -60,6 +67,20 @@ class PanelWidths:
         return self.beside or self.instruments
 
 
+def _spare_columns(columns: int, rows: int, shape: float) -> int:
+    """What a picture of a world of this shape leaves of a screen; 0 where nothing is known of it."""
+    if math.isinf(shape):
+        return 0
+    from kit.render.camera import CELL_ASPECT  # numpy, which the first frame does not wait for
+
+    return int(columns - CELL_ASPECT * rows * shape) - MARGIN
+
+
+def plain_width(columns: int, rows: int, shape: float) -> int:
+    """How wide a panel without instruments is that has a card. ``rows``: of the picture; ``shape``: as of ``panel_widths``."""
+    return max(PANEL_WIDTH, min(LARGE_PANEL_WIDTH, _spare_columns(columns, rows, shape)))
+
+
 def panel_widths(columns: int, rows: int, shape: float, wanted: int = 0) -> PanelWidths:
     """How wide the panel is on a screen of this size; nothing where there is no room for instruments.
 
@@ -68,11 +89,7 @@ def panel_widths(columns: int, rows: int, shape: float, wanted: int = 0) -> Pane
     """
     if rows < LEAST_ROWS:
         return PanelWidths()
-    spare = 0
-    if not math.isinf(shape):
-        from kit.render.camera import CELL_ASPECT  # numpy, which the first frame does not wait for
-
-        spare = int(columns - CELL_ASPECT * rows * shape) - MARGIN
+    spare = _spare_columns(columns, rows, shape)
     beside = min(wanted, spare - LARGE_PANEL_WIDTH - COLUMN_GAP)
     if wanted and beside >= ENOUGH * wanted:
         return PanelWidths(min(WIDE_PANEL[1] - MARGIN, spare - COLUMN_GAP - beside), beside)
@@ -197,6 +214,28 @@ def figure_rows(title: str, figures: Sequence[Row], width: int) -> list[Row]:
     return [ruled_title(title, width), *_two_columns(figures, width)]
 
 
+def figures_below(figures: Sequence[Row], width: int, room: int) -> list[Row]:
+    """The blocks of figures for which there is room below a card, those that a driver needs first; in two columns where they
+    are wide enough."""
+    starts = _title_numbers(figures)
+    blocks = [figures[start:end] for start, end in pairwise([*starts, len(figures)])]
+    shown: list[Row] = []
+    chosen: set[int] = set()
+    for number in sorted(range(len(blocks)), key=lambda number: _worth(blocks[number])):
+        rows = [each for at, block in enumerate(blocks) if at in chosen | {number} for each in block]
+        laid = _two_columns(rows, width) if width >= TWO_COLUMNS else rows
+        if len(laid) <= room:
+            shown = laid
+            chosen.add(number)
+    return shown
+
+
+def _worth(block: Sequence[Row]) -> int:
+    """The place of a block of figures among those by worth."""
+    title = row_text(block[0])
+    return BY_WORTH.index(title) if title in BY_WORTH else len(BY_WORTH)
+
+
 def _charts(view: View, history: SpeedHistory, width: int, rows: int) -> Iterator[list[Row]]:
     """What the laser sees, and the speeds of the last minute."""
     if view.nearest:  # it has a laser, whose first scan is to come or sees nothing
@@ -210,11 +249,16 @@ def _charts(view: View, history: SpeedHistory, width: int, rows: int) -> Iterato
         yield [title, *time_chart(history.turning, width, 0.5, rows)]
 
 
-def _two_columns(rows: Sequence[Row], width: int) -> list[Row]:
-    """The rows in two columns; the second begins at a title."""
-    titles = [
+def _title_numbers(rows: Sequence[Row]) -> list[int]:
+    """The numbers of the rows of figures with which a block begins."""
+    return [
         number for number, parts in enumerate(rows) if len(parts) == 1 and not parts[0][0].startswith(" ")
     ]
+
+
+def _two_columns(rows: Sequence[Row], width: int) -> list[Row]:
+    """The rows in two columns; the second begins at a title."""
+    titles = _title_numbers(rows)
     middle = min(titles, key=lambda number: abs(number - len(rows) / 2), default=0)
     left, right = rows[:middle], rows[middle:]
     half = width // 2

@@ -9,7 +9,7 @@ from typing import Final
 
 from kit.document.rows import Row, row
 from kit.school.game.drive_records import DriveRecord
-from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung
+from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung, rung_in_reach
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
 
@@ -84,8 +84,24 @@ def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> 
     return rows
 
 
-def rung_rows(driver: DriverKind, reference: float, seconds: float | None = None) -> list[Row]:
-    """A row for each rung, the highest first, with its time, and where a time stands among them with how far it is from each."""
+def in_reach_row(driver: DriverKind, reference: float, seconds: float, is_flawed: bool) -> Row:
+    """The best medal that a drive still earns, and until when.
+
+    >>> from kit.document.rows import row_text
+    >>> row_text(in_reach_row(DriverKind.KEYS, 10.0, 11.5, False))
+    'silver until 13.00 s'
+    """
+    medal = rung_in_reach(driver, reference, seconds, is_flawed)
+    if medal is None:
+        return row(("no medal now", "dim"))
+    return row((medal.title, "bold"), f" until {medal_time(medal, reference, driver):.2f} s")
+
+
+def rung_rows(
+    driver: DriverKind, reference: float, seconds: float | None = None, *, lost_after: float | None = None
+) -> list[Row]:
+    """A row for each rung, the highest first, with its time, and where a time stands among them with how far it is from each.
+    ``lost_after``: the time of a drive that goes on, for which some rungs are lost already [s]."""
     rows = []
     is_placed = seconds is None
     for medal in reversed(RUNGS):
@@ -101,11 +117,12 @@ def rung_rows(driver: DriverKind, reference: float, seconds: float | None = None
                 else f"  {limit - seconds:.2f} s to spare"
             )
         is_earned = seconds is not None and seconds <= limit
+        is_lost = lost_after is not None and lost_after > limit
         rows.append(
             row(
-                (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]),
-                (f"{medal.title:<8}", "good" if is_earned else ""),
-                f" {limit:8.2f} s",
+                (f"{MEDAL_SIGNS[medal]} ", "dim" if is_lost else MEDAL_STYLES[medal]),
+                (f"{medal.title:<8}", "dim" if is_lost else "good" if is_earned else ""),
+                (f" {limit:8.2f} s", "dim" if is_lost else ""),
                 (apart, "dim"),
             )
         )

@@ -14,19 +14,21 @@ from kit.school.game.levels import GameLevel
 from kit.school.game.player_progress import ExtraRule, offered_rules
 from kit.school.game.race import DriverKind
 from kit.tui.rows.drive_end_rows import sector_rows
-from kit.tui.rows.ladder_rows import RESULT_BAR, ladder_bar, rung_rows
+from kit.tui.rows.ladder_rows import RESULT_BAR, in_reach_row, ladder_bar, rung_rows
 from kit.tui.rows.medal_signs import NO_STAR, STAR
 from kit.tui.rows.ruled_title import ruled_title
 
 COLUMN: Final = 54
 """Columns of the stars where the sectors stand beside them."""
 GAP: Final = 2
-PARTS: Final = ("story", "task", "skill", "ladder", "stars", "rivals", "sectors")
+PARTS: Final = ("story", "task", "skill", "ladder", "rungs", "stars", "rivals", "sectors")
 """Parts of a card, from top to bottom."""
-BY_WORTH: Final = ("story", "ladder", "task", "stars", "skill", "rivals", "sectors")
+BY_WORTH: Final = ("story", "ladder", "rungs", "task", "stars", "skill", "rivals", "sectors")
 """The part that is left out last before the others."""
-NARROW_BY_WORTH: Final = ("task", "ladder", "story", "stars", "skill", "rivals", "sectors")
+NARROW_BY_WORTH: Final = ("task", "ladder", "rungs", "stars", "skill", "story", "rivals", "sectors")
 """The same in a narrow panel, where a story takes the rows of all else: it stood beside the list of levels."""
+TWO_RUNGS: Final = 43
+"""Columns of the card of a drive from which on two rungs stand beside each other."""
 LEAST_WIDTH: Final = 16
 """Columns of a card."""
 WIDE: Final = 46
@@ -39,6 +41,15 @@ class Rival(NamedTuple):
     letter: str
     who: str
     seconds: float
+
+
+class Standing(NamedTuple):
+    """How a drive stands that is not over."""
+
+    seconds: float
+    """Its time so far [s]."""
+    is_flawed: bool
+    """Whether it gets bronze at best."""
 
 
 class Company(NamedTuple):
@@ -56,20 +67,21 @@ def level_card(
     width: int,
     room: int,
     company: Company,
+    standing: Standing | None = None,
 ) -> dict[str, list[Row]]:
     """What a level is about, by part: story, task, the rungs of its ladder, the rules that earn stars, and what is known of
     others' and one's own drives. Parts for which there is no room are left out whole. ``kept``: the rules that a drive has
-    kept already."""
+    kept already. ``standing``: of a drive that goes on or is to begin, whose place on the ladder is shown."""
     if width < LEAST_WIDTH:  # the screen has no size yet
         return {}
-    skill = f"skill: {level.skill}" if level.skill else ""
-    ladder = [] if reference is None else _ladder_rows(driver, reference, width)
+    ladder, rungs = ([], []) if reference is None else _ladder_rows(driver, reference, width, standing)
     stars = [] if reference is None else star_rows(level, kept, width)
     rows = (
         [ruled_title("level", width), *(row(line) for line in wrap(level.story, width))],
-        [row((line, "bold")) for line in wrap(level.hint, width)],
-        [row((line, "dim")) for line in wrap(skill, width)],
+        [ruled_title("task", width), *(row((line, "bold")) for line in wrap(level.hint, width))],
+        [row((line, "dim")) for line in wrap(level.skill_sentence, width)],
         ladder,
+        rungs,
         stars,
         *(([], []) if width < WIDE else _company_rows(company, width)),
     )
@@ -82,13 +94,20 @@ def level_card(
     return {name: part for name, part in parts.items() if name in shown}
 
 
-def _ladder_rows(driver: DriverKind, reference: float, width: int) -> list[Row]:
-    """The ladder with the time of each of its rungs."""
-    rows = [
-        ruled_title("ladder", width, driver.phrase),
-        row(*ladder_bar(driver, reference, None, min(width, RESULT_BAR))),
-    ]
-    return [*rows, *rung_rows(driver, reference)]
+def _ladder_rows(
+    driver: DriverKind, reference: float, width: int, standing: Standing | None
+) -> tuple[list[Row], list[Row]]:
+    """The ladder, on it a drive that goes on with the best medal that it can still earn; and its rungs with their times."""
+    ladder, rungs = [ruled_title("ladder", width, driver.phrase)], rung_rows(driver, reference)
+    seconds = None if standing is None else standing.seconds or None
+    ladder.append(row(*ladder_bar(driver, reference, seconds, min(width, RESULT_BAR))))
+    if standing is not None:
+        ladder.append(in_reach_row(driver, reference, *standing))
+        rungs = rung_rows(driver, reference, lost_after=standing.seconds)
+    if standing is not None and width >= TWO_RUNGS:
+        half = (len(rungs) + 1) // 2
+        rungs = side_by_side(rungs[:half], rungs[half:], width // 2)
+    return ladder, rungs
 
 
 def _company_rows(company: Company, width: int) -> tuple[list[Row], list[Row]]:

@@ -11,7 +11,7 @@ from kit.plain_text import wrap
 from kit.school.game.daily import DAILY_PREFIX
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
-from kit.school.game.medal import RUNGS, Medal, medal_time, rung_in_reach
+from kit.school.game.medal import RUNGS, Medal
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of, next_belt
 from kit.school.game.race import STUCK_TIME, DriverKind, RaceFinish
 from kit.school.game.starts import SHIFT_M, SHIFT_RAD, STARTS
@@ -70,14 +70,6 @@ def game_progress(summary: GameSummary) -> list[Row]:
             row(f"  {title:<{titles}}  ", *medals, f"{blanks}  ", (figures, "bold" if won else "dim"))
         )
     return [row(f"  {medal_counts(summary)}"), row(), *rows]
-
-
-def still_in_reach(driver: DriverKind, reference: float, seconds: float, is_flawed: bool) -> str:
-    """The medal that is still in reach while one drives, and until when."""
-    medal = rung_in_reach(driver, reference, seconds, is_flawed)
-    if medal is None:
-        return "no medal now"
-    return f"{medal.title} before {medal_time(medal, reference, driver):.2f} s"
 
 
 def world_levels(

@@ -52,8 +52,10 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
+from kit.tui.rows.instrument_rows import TWO_COLUMNS
 from kit.tui.rows.key_rows import bindings
-from kit.tui.rows.level_card_rows import level_card
+from kit.tui.rows.ladder_rows import in_reach_row
+from kit.tui.rows.level_card_rows import Standing, level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.file_editor import edit_file
@@ -84,6 +86,8 @@ LETTER_NOTES: Final = (
     ("other letters", "classmates who have joined the leaderboard"),
     ("D", "a dock: stand still for a second to charge"),
 )
+ROWS_OF_FIGURES: Final = {False: 7, True: 4}
+"""Rows of a small panel that its card leaves to the robot's figures, which stand in one column or in two."""
 SIGHT: Final = 1.5
 """Distance within which the target is drawn in fog [m]."""
 
@@ -166,8 +170,8 @@ class LevelDrive(WatchScreen):
         self._behind: float | None = None
         self._is_over = False
         self._strength = 1.0
-        self._task_in_sight = False
-        """Whether the card beside the picture says the task."""
+        self._told_beside: frozenset[str] = frozenset()
+        """The parts of the card beside the picture."""
         self._result_row: Row = ()
         self._finishes: list[RaceFinish] = []
         """The ends of a program's drives from all starts."""
@@ -320,9 +324,15 @@ class LevelDrive(WatchScreen):
         return "e edits it" if self._may_edit else ""
 
     def _card(self, width: int, room: int) -> list[Row]:
-        reference = reference_seconds(self._level)
-        card = level_card(self._level, self._driver, reference, self._kept, width, room, self._company)
-        self._task_in_sight = "task" in card and self.query_one("#panel").display
+        reference, standing = reference_seconds(self._level), Standing(0.0, False)
+        if self._referee is not None and self.view is not None:
+            standing = Standing(self.view.time_s, self._referee.finish.is_flawed)
+        if not self._widths.total:
+            room -= ROWS_OF_FIGURES[width >= TWO_COLUMNS]
+        card = level_card(
+            self._level, self._driver, reference, self._kept, width, room, self._company, standing
+        )
+        self._told_beside = frozenset(card) if self.query_one("#panel").display else frozenset()
         return [each for part in card.values() for each in part]
 
     def _view_arrived(self, view: View) -> None:
@@ -384,7 +394,7 @@ class LevelDrive(WatchScreen):
                 self._level,
                 ghosts,
                 self.size.width,
-                task_in_sight=self._task_in_sight,
+                task_in_sight="task" in self._told_beside,
                 is_practice=self._is_practice,
             )
             self._rows("messages").show(rows)
@@ -416,10 +426,10 @@ class LevelDrive(WatchScreen):
             if row_width(row(*left, *behind, *right)) + 2 <= width:
                 right = [*behind, *right]
         reference = reference_seconds(self._level) if self._level.has_medals else None
-        if reference is not None and not self._is_over:
-            reach = level_rows.still_in_reach(self._driver, reference, time_s, finish.is_flawed)
-            if row_width(row(*left, *right)) + len(reach) + 4 <= width:
-                left.append((f"  {reach}", "dim"))
+        if reference is not None and not self._is_over and "ladder" not in self._told_beside:
+            reach = in_reach_row(self._driver, reference, time_s, finish.is_flawed)
+            if row_width(row(*left, *reach, *right)) + 4 <= width:
+                left += [("  ", ""), *reach]
         return at_both_edges(row(*left), row(*right), width)
 
     def _end(self, session: Session) -> None:

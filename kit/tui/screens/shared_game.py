@@ -220,8 +220,6 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         self._phase = SharedPhase.WAITING
         self._recorder: Recorder | None = None
         self._film: Recording | None = None
-        self._shows_card = True
-        """Whether there was room for the players below the robot's figures."""
         self.player = HOST
 
     def open_world(self) -> None:
@@ -303,18 +301,10 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         if self._mode is SharedMode.TAG:
             metrics = replace(view.metrics, target_m=None, reached_s=None)
             view = replace(view, metrics=metrics, scene=replace(view.scene, targets=()))
-        rows = super()._panel_rows(view)
-        if self._shows_card:
-            return rows
-        panel = self._rows("panel").content_size
-        return tuple(self._card(panel.width - 1, panel.height))
+        return super()._panel_rows(view)
 
     def _card(self, width: int, room: int) -> list[Row]:
-        if self.state is None:
-            return []
-        card = players_card(self._mode, self.state, self.player, width)
-        self._shows_card = len(card) <= room
-        return card if self._shows_card else []
+        return [] if self.state is None else players_card(self._mode, self.state, self.player, width)[:room]
 
     def _newest_scene(self) -> Scene:
         return self._with_targets_and_ghosts(super()._newest_scene())

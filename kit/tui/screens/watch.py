@@ -27,8 +27,10 @@ from kit.tui.rows.instrument_rows import (
     PanelWidths,
     SpeedHistory,
     figure_rows,
+    figures_below,
     instruments,
     panel_widths,
+    plain_width,
     tells_messages,
     with_charts,
 )
@@ -56,6 +58,8 @@ if TYPE_CHECKING:
 SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
 PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
 MESSAGE_ROWS: Final = 2
+ROWS_AROUND: Final = 2 + MESSAGE_ROWS
+"""Of the picture: the heading, the messages and the keys."""
 BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide"), (100, "-roomy")]
 """From which width on: without and with the figures beside the world, and with what an agent perceives beside both."""
 LOADING_S: Final = 1.5
@@ -379,9 +383,12 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         has_program = self.view is not None and self.view.program is not None and self.shows_program
         wanted = CARD_WIDTH if self.has_card else CODE_WIDTH if has_program else 0
         widths = panel_widths(*self.size, shape, wanted)
+        if self.has_card and not widths.total:
+            plain = plain_width(self.size.width, self.size.height - ROWS_AROUND, shape)
+            widths = replace(widths, plain=plain)
         if widths != self._widths:
             self._widths = widths
-            self.query_one("#panel").styles.width = widths.total + MARGIN if widths.total else PANEL_WIDTH
+            self.query_one("#panel").styles.width = widths.total + MARGIN if widths.total else widths.plain
 
     def _panel_rows(self, view: View) -> tuple[Row, ...]:
         mode = self.drive.choice.mode if self.shows_mode else None
@@ -389,11 +396,15 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         panel, widths = self._rows("panel").content_size, self._widths
         title, figures = self._figures(view, mode)
         if not widths.total:
-            card = self._card(panel.width - 1, panel.height - len(figures))
-            if self.has_instruments:
-                size = panel.width - 1, panel.height - len(card)
-                figures = with_charts(view, self._history, figures, size)
-            return (*figures, *card)
+            width, height = panel.width - 1, panel.height
+            if self.has_card:
+                card = self._card(width, height)
+                return (*card, *figures_below(figures, width, height - len(card)))
+            return tuple(
+                with_charts(view, self._history, figures, (width, height))
+                if self.has_instruments
+                else figures
+            )
         figures = figure_rows(title, figures, widths.instruments)
         card = self._card(widths.card, panel.height - (0 if widths.beside else len(figures)))
         if view.program != self._program[0]:
@@ -416,7 +427,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         return "robot", readout(view, mode)
 
     def _card(self, width: int, room: int) -> list[Row]:
-        """What stands below the figures of the panel; charts and the program get the room that it leaves. ``room``: rows."""
+        """The panel's card: below the figures of a large screen, where charts and the program get the room that it leaves, else
+        above them. ``room``: rows."""
         return []
 
     def _newest_scene(self) -> Scene:
