@@ -121,9 +121,14 @@ class DriverKind(StrEnum):
     AGENT = "agent"
 
     @property
+    def noun(self) -> str:
+        """What drives, in a word."""
+        return {"keys": "hand", "controller": "program"}.get(self.value, self.value)
+
+    @property
     def phrase(self) -> str:
         """How a drive by it was made, in words."""
-        return {"keys": "by hand", "controller": "by program"}.get(self.value, "by agent")
+        return f"by {self.noun}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,12 @@ from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
 
 LIST_BAR, ABOUT_BAR, RESULT_BAR = 13, 34, 40
 """Columns of a ladder in the list of levels, below it, and at the end of a drive."""
+LADDERS: Final = tuple(
+    dict.fromkeys(
+        tuple(each for each in DriverKind if SHARES[each] == SHARES[driver]) for driver in DriverKind
+    )
+)
+"""The drivers, those together that have the same ladder."""
 HERE: Final = "\u25cf"
 """Where a drive stands on a ladder."""
 

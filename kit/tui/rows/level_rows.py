@@ -9,13 +9,12 @@ from typing import Final
 from kit.document.rows import Row, row, row_width
 from kit.plain_text import wrap
 from kit.school.game.daily import DAILY_PREFIX
-from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
 from kit.school.game.medal import RUNGS, Medal
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of, next_belt
 from kit.school.game.race import STUCK_TIME, DriverKind, RaceFinish
 from kit.school.game.starts import SHIFT_M, SHIFT_RAD, STARTS
-from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_words
+from kit.tui.rows.ladder_rows import ABOUT_BAR, LADDERS, LIST_BAR, ladder_bar, ladder_words
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
 
 TITLE_WIDTH: Final = 24
@@ -25,8 +24,12 @@ MEDAL_WIDTHS: Final = (6, 9, 7)
 """Columns of the medals by hand, by program and by agent."""
 WHOLE: Final = 79
 """Columns of the list with its ladders."""
-LADDER_WORDS: Final = 38
-"""Columns around a ladder below the list: whose it is, one's time and what the next rung asks for."""
+ABOUT_LABEL, LADDER_LABEL = 7, 15
+"""Columns of what stands before a text and before a ladder below the list."""
+LADDER_WORDS: Final = LADDER_LABEL + 29
+"""Columns around a ladder there: whose it is, one's time and what the next rung asks for."""
+THUMBNAIL: Final = 20, 7
+"""Columns and rows of the chosen level's map where it stands beside what is said of the level."""
 BAR: Final = 12
 """Columns of the longest sector's bar."""
 
@@ -114,35 +117,41 @@ def world_levels(
     return rows
 
 
-def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | None, width: int) -> list[Row]:
-    """What the chosen level asks for, and how it was driven. ``width``: of the screen, which the ladders are fitted to."""
+def about(progress: LevelProgress, reference: float | None, width: int, room: int) -> list[Row]:
+    """What the chosen level asks for, and how it was driven, in at most ``width`` columns. In fewer than ``room`` rows there is
+    also the skill that it takes."""
     level = progress.level
     lead = f"{level.title}  "
     first, *rest = wrap(level.story, width, first=" " * len(lead))
-    rows = [
-        row((lead, "bold"), first.lstrip()),
-        *map(row, rest),
-        row(("task   ", "dim"), level.hint),
-        row(
-            ("skill  ", "dim"),
-            level.skill,
-        ),
-    ]
+    rows = [row((lead, "bold"), first.lstrip()), *map(row, rest), *_labelled("task", level.hint, width)]
+    skill, best = _labelled("skill", level.skill, width), progress.best_times
     if not progress.is_open:
-        return [*rows, row(("locked ", "dim"), opens_after(level))]
-    if reference is None:
-        times = [f"{driver.phrase} {time:.2f} s" for driver, time in progress.best_times.items()]
-        return [*rows, row(("best   ", "dim"), ", ".join(times) or "none yet")]
-    for driver in DriverKind:
-        best = progress.best_times.get(driver)
-        rows.append(
-            row(
-                (f"{driver.phrase:<11}", "dim"),
-                *ladder_bar(driver, reference, best, max(LIST_BAR, min(ABOUT_BAR, width - LADDER_WORDS))),
-                ladder_words(driver, reference, best),
+        standing = _labelled("locked", opens_after(level), width)
+    elif reference is None:
+        times = [f"{driver.phrase} {time:.2f} s" for driver, time in best.items()]
+        standing = _labelled("best", ", ".join(times) or "none yet", width)
+    else:
+        bar = max(LIST_BAR, min(ABOUT_BAR, width - LADDER_WORDS))
+        standing = []
+        for drivers in LADDERS:
+            driver = min(drivers, key=lambda each: best.get(each, math.inf))
+            standing.append(
+                row(
+                    (f"{', '.join(each.noun for each in drivers):<{LADDER_LABEL}}", "dim"),
+                    *ladder_bar(driver, reference, best.get(driver), bar),
+                    ladder_words(driver, reference, best.get(driver)),
+                )
             )
-        )
-    return rows
+    return [*rows, *(skill if len(rows) + len(skill) + len(standing) < room else []), *standing]
+
+
+def _labelled(label: str, text: str, width: int) -> list[Row]:
+    """A text behind its label."""
+    first, *rest = wrap(text, width - ABOUT_LABEL)
+    return [
+        row((f"{label:<{ABOUT_LABEL}}", "dim"), first),
+        *(row(" " * ABOUT_LABEL, each) for each in rest),
+    ]
 
 
 def way_to_agent(level: GameLevel) -> str:

@@ -55,7 +55,7 @@ from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.dialogue import WIDEST_BESIDE
 from kit.tui.screens.leaderboard import LeaderboardScreen
-from kit.tui.screens.level_pictures import company_of, ghost_paths, picture_of, scene_of
+from kit.tui.screens.level_pictures import company_of, ghost_paths, picture_of, picture_rows, scene_of
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
@@ -329,10 +329,22 @@ class LevelsScreen(RowsScreen[None]):
             *card,
             *map_rows(levels, self._map_places(), self._pictures, level.id),
         ]
-        ghosts = self._known.get(level.id, ())
         width = (MAP_WIDTH if self._has_card else self.size.width) - 1  # beside the margin of the list
-        about = level_rows.about(self.chosen, ghosts, self._references[level.id], width)
-        return listed, [fitted(row(" ", *each), width + 1) for each in about]
+        if not self._has_thumbnail:
+            about = level_rows.about(self.chosen, self._references[level.id], width, ABOUT_ROWS)
+            return listed, [fitted(row(" ", *each), width + 1) for each in about]
+        width -= level_rows.THUMBNAIL[0] + MARGIN
+        about = level_rows.about(self.chosen, self._references[level.id], width, ABOUT_ROWS)
+        picture = picture_rows(self._pictures.get(level.id, ()))
+        return listed, side_by_side(
+            [fitted(row(" ", *each), width + 1) for each in about], picture, width + 1 + MARGIN
+        )
+
+    @property
+    def _has_thumbnail(self) -> bool:
+        """Whether the chosen level's map stands beside what is said of it: no other picture of it is on the screen."""
+        has_map = self.has_class("-wide") or any(place.rows for place in self._map_places())
+        return self.size.width >= level_rows.WHOLE and self.chosen_challenge is None and not has_map
 
     @property
     def _has_card(self) -> bool:
@@ -445,15 +457,16 @@ class LevelsScreen(RowsScreen[None]):
 
     @work(exclusive=True, group="pictures")
     async def _draw_pictures(self) -> None:
-        """The pictures of the chosen world's map, each in its turn."""
-        for place in self._map_places():
-            picture = self._pictures.get(place.level, ())
-            if place.rows and (len(picture), *map(len, picture[:1])) != (place.rows, place.columns):
-                level = next(each for each in self._levels if each.id == place.level)
+        """The pictures of the chosen world's map, each in its turn, or the chosen level's."""
+        wanted = [(each.level, (each.columns, each.rows)) for each in self._map_places() if each.rows]
+        if self._has_thumbnail:
+            wanted = [(self.chosen.level.id, level_rows.THUMBNAIL)]
+        for name, (columns, rows) in wanted:
+            picture = self._pictures.get(name, ())
+            if (len(picture), *map(len, picture[:1])) != (rows, columns):
+                level = next(each for each in self._levels if each.id == name)
                 glyphs = self._theme.terminal.glyphs.value
-                self._pictures[place.level] = await to_thread(
-                    picture_of, level, place.columns, place.rows, glyphs
-                )
+                self._pictures[name] = await to_thread(picture_of, level, columns, rows, glyphs)
                 self._show()
 
     def _in_world(self, world: str) -> list[LevelProgress]:

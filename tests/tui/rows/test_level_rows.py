@@ -8,14 +8,18 @@ from itertools import product
 
 import pytest
 
+from kit.document.rows import MARGIN, row_width
 from kit.host.failure import Failure, FailureKind
 from kit.school.game.levels import all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import GameSummary, LevelProgress, level_progress
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.rows.drive_end_rows import finish_sentence, how_it_ended
+from kit.tui.rows.ladder_rows import LADDERS
 from kit.tui.rows.level_map_rows import map_places, map_rows
 from kit.tui.rows.level_rows import (
+    THUMBNAIL,
+    WHOLE,
     about,
     before_the_start,
     game_progress,
@@ -74,6 +78,17 @@ def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: s
     assert next(part for each in rows for part, style in each if style == "key").strip()
 
 
+def test_what_is_said_of_a_level_fits_beside_its_map() -> None:
+    columns, rows = THUMBNAIL
+    width = WHOLE - columns - MARGIN
+    for each, is_open in product(level_progress(kit_levels(), ()), (True, False)):
+        times = dict.fromkeys(DriverKind, 123.45)
+        told = about(replace(each, is_open=is_open, best_times=times), 110.0, width, rows + 1)
+        assert len(told) <= rows + 1
+        assert max(map(row_width, told)) <= width
+        assert sum("━" in row_text(line) for line in told) == (len(LADDERS) if is_open else 0)
+
+
 def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
     for world in all_worlds():
         for medals in ([Medal.NONE], [Medal.BRONZE], [Medal.GOLD]):
@@ -81,7 +96,7 @@ def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
         assert "white for a medal" in row_text(world_heading(world, 1, 8, [Medal.NONE], 120)[0])
     for each in level_progress(kit_levels(), ()):
         for is_open in (True, False):
-            rows = about(replace(each, is_open=is_open), (), 99.0, 80)
+            rows = about(replace(each, is_open=is_open), 99.0, 80, 99)
             told = " ".join(map(row_text, rows))
             assert (f"lesson {each.level.lesson_number}" in told) is (
                 bool(each.level.opened_by_lesson) and not is_open

@@ -43,6 +43,7 @@ from kit.tui.rows.drive_end_page import (
 )
 from kit.tui.rows.drive_end_rows import LEAST_CURVE_ROWS
 from kit.tui.rows.ladder_rows import ladder_of_drive
+from kit.tui.rows.level_rows import THUMBNAIL
 from kit.tui.screens import level_result
 from kit.tui.screens import levels as levels_module
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
@@ -173,9 +174,26 @@ def test_the_stars_of_a_level_stand_below_the_list_of_every_world(
             await wait_until_shown(pilot, lambda title=level.title: f"> {title}" in flat(pilot.app))
             names = ExtraRule.CLEAN.description(level), ExtraRule.CLEAN.short_name(level)
             assert any(each in flat(pilot.app) for each in names), level.world
-            assert f"{level.title} {level.story}" in flat(pilot.app)
+            assert all(word in flat(pilot.app) for word in level.story.split())
 
     play(scene, progress, tmp_path)
+
+
+def test_on_a_small_screen_the_map_of_the_chosen_level_stands_beside_what_is_said_of_it(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        about = screen.query_one("#about", TextRows)
+        seen = set()
+        for _ in range(2):
+            title = screen.chosen.level.title
+            await wait_until_shown(pilot, lambda title=title: title in row_text(about._rows[0]))
+            await wait_until_shown(pilot, lambda: "◎" in "".join(map(row_text, about._rows)))
+            seen.add(tuple(row_text(each)[-THUMBNAIL[0] :] for each in about._rows))
+            await pilot.press("right")
+        assert len(seen) == 2
+
+    play(scene, progress, tmp_path / "desk", (80, 24))
 
 
 def test_on_a_wide_screen_the_chosen_level_is_shown(progress: ProgressJournal, tmp_path: Path) -> None:
