@@ -70,7 +70,7 @@ class Teleop(Node):
         if near != self.near:
             self.near = near
             if near:
-                self.get_logger().warning(f"Wall near: {', '.join(near)}.")
+                self.get_logger().warning(f"Obstacle near: {', '.join(near)}.")
             self.send()
 
     def on_collisions(self, message: Collisions) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -58,6 +58,8 @@ class StudentStore:
         self.workspace = workspace
         self._lessons = lessons
         self._progress: ProgressJournal | None = None
+        self._known: StudentOverview | None = None
+        """What was read last."""
         self._opening = threading.Lock()
 
     def progress(self) -> ProgressJournal:
@@ -76,17 +78,18 @@ class StudentStore:
             notice, self._progress.notice = self._progress.notice, ""
         return notice
 
-    def read_overview(
-        self, on_lessons: Callable[[StudentOverview], None] = lambda _: None
-    ) -> StudentOverview:
-        """Reads everything. Slow: to be called in another thread. ``on_lessons``: is told where to go on as soon as that is
-        known, a third of the way."""
+    def read_overview(self, on_part: Callable[[StudentOverview], None] = lambda _: None) -> StudentOverview:
+        """Reads everything. Slow: to be called in another thread. ``on_part``: is told where to go on as soon as that is known, a
+        third of the way; and before that, where all was read once, what was won since."""
         from kit.school.lessons.catalogue import list_lessons, next_lesson
         from kit.school.news import take_news
         from kit.school.progress import ProgressError
 
         try:
             events = self.progress().events()
+            if self._known is not None:
+                next_medal, next_level, won = self._game(events)
+                on_part(replace(self._known, next_medal=next_medal, next_level=next_level, won=won))
             shelf = list_lessons(events, self._lessons)
         except (ProgressError, FileNotFoundError) as error:
             return StudentOverview(problem=str(error))
@@ -95,9 +98,9 @@ class StudentStore:
 
         day = today()
         days, has_run = streak(events, day), any(event.subject == daily_id(day) for event in events)
-        on_lessons(StudentOverview(shelf, going_on, streak=days, has_run_today=has_run, is_whole=False))
+        on_part(StudentOverview(shelf, going_on, streak=days, has_run_today=has_run, is_whole=False))
         next_medal, next_level, won = self._game(events)
-        return StudentOverview(
+        self._known = StudentOverview(
             shelf,
             going_on,
             self._count_due(),
@@ -109,6 +112,7 @@ class StudentStore:
             self._running(),
             take_news(self.progress(), "start"),
         )
+        return self._known
 
     def open_lesson(self, lesson: Lesson) -> LessonSession:
         """Opens a lesson for the student. Raises ProgressError."""

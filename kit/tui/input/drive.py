@@ -95,6 +95,15 @@ class KeyboardDrive:
         return ModeChoice(self._requested_mode, "your choice") if self._requested_mode else self._automatic
 
     @property
+    def mode_name(self) -> str:
+        """The active mode in a few words, and whether the user chose it.
+
+        >>> KeyboardDrive().mode_name
+        'hold (automatic)'
+        """
+        return self._requested_mode or f"{self._automatic.mode} (automatic)"
+
+    @property
     def status(self) -> str:
         """One line for the status bar: the mode, what it means, why; or what would be better."""
         choice = self.choice

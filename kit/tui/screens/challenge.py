@@ -42,7 +42,7 @@ from kit.tui.rows.key_rows import FOOTER_ROWS, bindings
 from kit.tui.rows.lesson_rows import checking
 from kit.tui.rows.medal_rows import medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
-from kit.tui.screens.file_editor import edit_file
+from kit.tui.screens.file_editor import EditsFile, edit_file
 from kit.tui.screens.level_pictures import task_picture
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
@@ -68,7 +68,7 @@ NO_RUNS: Final = (
 )
 
 
-class ChallengeScreen(TextScreen, inherit_bindings=False):
+class ChallengeScreen(EditsFile, TextScreen, inherit_bindings=False):
     """Shows a challenge and checks its answer, on a key and whenever the file is saved."""
 
     has_beside: ClassVar[bool] = True
@@ -295,13 +295,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     # Keys
 
-    def action_edit_file(self) -> None:
-        self._edit(is_here=False)
-
-    def action_editor(self) -> None:
-        self._edit(is_here=True)
-
-    def _edit(self, *, is_here: bool) -> None:
+    def edit(self, *, is_here: bool) -> None:
         """Opens the answer's file; what was saved is checked."""
         if self._file is not None and self._started_at is None:
             edit_file(self.app, self._file, self._theme.terminal, lambda: None, is_here=is_here)

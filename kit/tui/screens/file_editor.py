@@ -65,6 +65,20 @@ class FileEditorScreen(ModalScreen[None]):
         self.action_editor()
 
 
+class EditsFile:
+    """A screen that opens one file: with ``e`` in the student's editor, with ``^E`` in the kit's."""
+
+    def action_edit_file(self) -> None:
+        self.edit(is_here=False)
+
+    def action_editor(self) -> None:
+        self.edit(is_here=True)
+
+    def edit(self, *, is_here: bool) -> None:
+        """Opens it. ``is_here``: as of ``edit_file``."""
+        raise NotImplementedError
+
+
 def edit_file(
     app: App[Any],
     file: Path,

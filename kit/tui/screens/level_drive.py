@@ -58,7 +58,7 @@ from kit.tui.rows.ladder_rows import in_reach_row
 from kit.tui.rows.level_card_rows import Standing, level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.file_editor import edit_file
+from kit.tui.screens.file_editor import EditsFile, edit_file
 from kit.tui.screens.level_pictures import (
     GHOST_LOOKS,
     company_of,
@@ -118,7 +118,7 @@ class DriveEnded(Message):
         self.problem = problem
 
 
-class LevelDrive(WatchScreen):
+class LevelDrive(EditsFile, WatchScreen):
     """A letter shows where each ghost was at this time of its drive; its way is dotted.
 
     Leaves with ``next`` where the player wants the next level.
@@ -527,13 +527,7 @@ class LevelDrive(WatchScreen):
         """Whether a program of the player's drives; not in the run that counts for today, which a change would end."""
         return self._own_program is not None and not self._is_run_of_the_day
 
-    def action_edit_file(self) -> None:
-        self._edit(is_here=False)
-
-    def action_editor(self) -> None:
-        self._edit(is_here=True)
-
-    def _edit(self, *, is_here: bool) -> None:
+    def edit(self, *, is_here: bool) -> None:
         """Opens the program that drives; once it is another one, it drives again."""
         program = self._own_program
         if program is not None and self._may_edit:

@@ -54,7 +54,7 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.rows.medal_rows import SMALL, drawn_columns, medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
-from kit.tui.screens.file_editor import edit_file
+from kit.tui.screens.file_editor import EditsFile, edit_file
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
 from kit.tui.theme import Theme
@@ -100,7 +100,7 @@ class DriveResult:
     """The player's own program that drove; None: something else did."""
 
 
-class DriveResultScreen(ModalScreen[Wish]):
+class DriveResultScreen(EditsFile, ModalScreen[Wish]):
     """What a drive earned, beside its map. A driving key that is still held does not close it."""
 
     screen_actions = ScreenActions(
@@ -280,13 +280,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     def action_restart(self) -> None:
         self.dismiss("restart")
 
-    def action_edit_file(self) -> None:
-        self._edit(is_here=False)
-
-    def action_editor(self) -> None:
-        self._edit(is_here=True)
-
-    def _edit(self, *, is_here: bool) -> None:
+    def edit(self, *, is_here: bool) -> None:
         """Opens the program that drove, where it failed if it did; once it is another one, it drives again."""
         program, failure = self._result.program, self._result.finish.failure
         if program is None:

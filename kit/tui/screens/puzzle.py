@@ -192,9 +192,9 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         self._board.switch()
         self._changed()
 
-    def _edit(self, *, is_here: bool) -> None:
+    def edit(self, *, is_here: bool) -> None:
         self._write()
-        super()._edit(is_here=is_here)
+        super().edit(is_here=is_here)
 
     def on_unmount(self) -> None:
         self._write()

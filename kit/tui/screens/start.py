@@ -209,8 +209,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     async def _refresh_overview(self) -> StudentOverview:
         """Read again, and shown."""
-        loop, tell_lessons = get_running_loop(), called_in_loop(self._show_lessons)
-        overview = await loop.run_in_executor(self._reading, self._store.read_overview, tell_lessons)
+        loop, tell_part = get_running_loop(), called_in_loop(self._show_part)
+        overview = await loop.run_in_executor(self._reading, self._store.read_overview, tell_part)
         self._overview, self._is_outdated = overview, False
         self._news = overview.news or self._news
         await self._draw_level_picture()
@@ -232,17 +232,18 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._draw_level_picture()
         self._show_menu()
 
-    def _show_lessons(self, lessons: StudentOverview) -> None:
-        """Shows where to go on and whether today's maze was driven before the rest is known, which stays as it was."""
-        if self._overview is None:
-            self._overview = lessons
-        elif not lessons.problem:
+    def _show_part(self, known: StudentOverview) -> None:
+        """Shows what was won, where to go on, and whether today's maze was driven before the rest is known, which stays as it
+        was."""
+        if self._overview is None or known.is_whole:
+            self._overview = known
+        elif not known.problem:
             self._overview = replace(
                 self._overview,
-                shelf=lessons.shelf,
-                going_on=lessons.going_on,
-                streak=lessons.streak,
-                has_run_today=lessons.has_run_today,
+                shelf=known.shelf,
+                going_on=known.going_on,
+                streak=known.streak,
+                has_run_today=known.has_run_today,
             )
         self._show()
 

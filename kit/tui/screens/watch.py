@@ -391,7 +391,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             self.query_one("#panel").styles.width = widths.total + MARGIN if widths.total else widths.plain
 
     def _panel_rows(self, view: View) -> tuple[Row, ...]:
-        mode = self.drive.choice.mode if self.shows_mode else None
+        mode = self.drive.mode_name if self.shows_mode else None
         self._history.add(view)
         panel, widths = self._rows("panel").content_size, self._widths
         title, figures = self._figures(view, mode)

@@ -90,7 +90,7 @@ def test_a_drive_behind_a_dialog_is_fitted_to_a_terminal_that_is_resized(tmp_pat
     async def scene(pilot: Pilot[None]) -> None:
         app = pilot.app
         assert isinstance(app, KitApp)
-        await seen(pilot, "front")
+        await seen(pilot, "forward")
         await pilot.pause(2.0 * FITTING_S)
         app.push_screen(MessageDialog("Title", [row("what is asked")]))
         await seen(pilot, "what is asked")
@@ -157,7 +157,7 @@ def test_the_help_of_a_drive_names_no_key_that_does_nothing(tmp_path: Path, driv
     program = find_controller("circle") if driver is DriverKind.CONTROLLER else None
 
     async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, "front")
+        await seen(pilot, "forward")
         await pilot.press("question_mark")
         await seen(pilot, "show or hide the ghosts")
         assert ("full speed" in text(pilot)) is (program is not None)
@@ -233,7 +233,7 @@ def test_a_drive_by_hand_has_no_program_to_edit(tmp_path: Path) -> None:
     workspace = prepare_workspace(tmp_path / "home")
 
     async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, "front")
+        await seen(pilot, "forward")
         assert "edit" not in text(pilot)
         await pilot.press("e")
         assert isinstance(pilot.app.screen, LevelDrive)
@@ -291,9 +291,9 @@ def test_by_hand_it_is_the_robot_that_tells_of_walls(tmp_path: Path) -> None:
     workspace = prepare_workspace(tmp_path / "home")
 
     async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, "front")
+        await seen(pilot, "forward")
         await pilot.press("z", "s")
-        await seen(pilot, "robot: Wall near")
+        await seen(pilot, "robot: Obstacle near")
         assert "teleop: " not in text(pilot)
 
     with ProgressJournal(workspace.folder) as journal:
