@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from asyncio import Lock, to_thread
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -25,9 +25,10 @@ from kit.document.rows import Row, at_both_edges, broken, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
 from kit.school.game.league.entries import LeagueError, program_of_agent, renew_beside_former, submit
-from kit.school.game.league.league import RACE_LIMIT, League, seconds_left
+from kit.school.game.league.league import RACE_LIMIT, League, LeagueJob, seconds_left
 from kit.school.game.league.league_blocks import (
     KEYS,
+    job_title,
     level_grid,
     matches_table,
     result_sentence,
@@ -37,6 +38,7 @@ from kit.school.game.league.league_blocks import (
 from kit.school.game.league.standings import Match, Standings, match_film, read_standings
 from kit.school.game.two_players import TAG_RULE
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.progress_marks import share_bar
 from kit.tui.rows.training_rows import clock
 from kit.tui.screens.agents import agent_items
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
@@ -91,8 +93,8 @@ class LeagueScreen(RowsScreen[None]):
         self._asked = self._read_for = 0
         """How often the standings were asked for, and how many of these they answer."""
         self._is_running = False
-        self._driving = ""
-        """How many matches of a run have been driven; empty where none is driven."""
+        self._driving: Row = ()
+        """How far a run is and what is driven now; empty where nothing is."""
         self._maps: list[Row] = []
         """Pictures of what is driven, beside the rules of a league that nobody has entered yet."""
 
@@ -233,9 +235,9 @@ class LeagueScreen(RowsScreen[None]):
         below = [row(), *(row("   ", *each) for each in self._maps)] if self._has_own and self._maps else []
         has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
         self._rows("body").show([*tables, *below] if has_room else tables)
-        told = "" if self._note else self._told_of_match
-        told = told or " ".join(filter(None, (self._note, self._driving)))
-        note = broken(row((f"  {told}", "dim")), width)
+        told = self._note or ("" if self._driving else self._told_of_match)
+        beside = (" " if told and self._driving else "", "dim")
+        note = broken(row("  ", (told, "dim"), beside, *self._driving), width)
         self._rows("note").show(note[: self._note_rows])
         labels = {"open": "matches" if self._match is None else "replay"}
         keys = footer(self.screen_actions, width, labels=labels, without=self.unavailable_actions)
@@ -279,7 +281,7 @@ class LeagueScreen(RowsScreen[None]):
                 left += [row(), *below]
         table = matches_table(self._matches, name)
         has_maps = not self._has_own and self._match is None and is_wide
-        right: list[Row] = [row(), row((f"   Matches of {name}" if name else "", "bold")), row()]
+        right: list[Row] = [row(), row((f"   Matches of {name}" if name else "", "title")), row()]
         if table.rows:
             right_width = width - left_width if is_wide else width
             if self._match is None:
@@ -399,12 +401,12 @@ class LeagueScreen(RowsScreen[None]):
                     raise LeftError("The league was left.")
                 done.add(key)
                 left_s = seconds_left(jobs, done, time.monotonic() - begun_s)
-                self.app.call_from_thread(self._show_count, len(done), len(keys), left_s)
+                self.app.call_from_thread(self._show_count, jobs, done, left_s)
                 self.app.call_from_thread(self._read, None)
 
             if keys:
                 self._note = note
-                self._show_count(0, len(keys))
+                self._show_count(jobs, done)
                 executor = JobExecutor(jobs=os.cpu_count() or 1)
                 await to_thread(executor.run, self._league, keys, count)
         except LeftError:
@@ -414,23 +416,33 @@ class LeagueScreen(RowsScreen[None]):
             return
         finally:
             self._is_running = False
-        self._driving = "Running the drives again ..." if keys else ""
+        self._driving = row(("Running the drives again ...", "dim")) if keys else ()
         self._show()
         idle = "All matches are driven." if len(self._entrants) > 1 else "A match needs two entrants."
         await self._read_now(f"{len(keys)} were driven." if keys else idle)
-        self._driving = ""
+        self._driving = ()
         self._show()
 
-    def _show_count(self, done: int, count: int, left_s: float | None = None) -> None:
-        left = "" if left_s is None else f", about {clock(left_s)} left"
-        self._driving = (
-            f"Driving: {done} of {count}{left}. You can leave and go on later." if done < count else ""
-        )
+    def _show_count(
+        self, jobs: Sequence[LeagueJob], done: Collection[str], left_s: float | None = None
+    ) -> None:
+        self._driving = driving_row(jobs, done, left_s)
         self._show()
 
     def _show_note(self, note: str) -> None:
         self._note = note
         self._show()
+
+
+def driving_row(jobs: Sequence[LeagueJob], done: Collection[str], left_s: float | None) -> Row:
+    """How far a run is, and what is driven now; empty at its end. ``jobs``: all of it, in the order in which they are begun.
+    ``done``: keys. ``left_s``: what the rest takes [s], once that is known."""
+    rest = [each for each in jobs if each.key not in done]
+    if not rest:
+        return ()
+    left = "" if left_s is None else f", {clock(left_s)} left"
+    count = f" {len(jobs) - len(rest)} of {len(jobs)}{left}  "
+    return row((share_bar(1.0 - len(rest) / len(jobs)), "good"), count, (job_title(rest[0]), "bold"))
 
 
 NOTES: Final = (

@@ -19,12 +19,13 @@ from kit.school.game.league.standings import Match, Standings, match_film, read_
 from kit.school.game.levels import find_level
 from kit.school.game.race import DriverKind
 from kit.tui.screens import league as league_screen
-from kit.tui.screens.league import STANDINGS_WIDTH, LeagueScreen
+from kit.tui.screens.league import STANDINGS_WIDTH, LeagueScreen, driving_row
 from kit.tui.screens.level_drive import LeftError
 from kit.tui.screens.level_pictures import pictures_of
 from kit.tui.screens.match_replay import MatchReplayScreen
 from kit.workspace import open_workspace
 from tests.kit_content import kit_levels
+from tests.school.game.league.house_results import house_jobs
 from tests.school.game.league.test_league import GIVES_UP, LASER, make_league, run
 from tests.tui.lesson_stage import row_text, seen, stage, text, until
 
@@ -206,3 +207,15 @@ def test_a_match_is_one_row_beside_the_standings(is_first: bool) -> None:
     assert "the_other_one" in only
     assert own.name not in only
     assert len(shown) == 1
+
+
+def test_a_run_shows_how_far_it_is_and_who_drives_where() -> None:
+    jobs = house_jobs()
+    for count in range(len(jobs)):
+        shown = row_text(driving_row(jobs, {each.key for each in jobs[:count]}, None))
+        assert f"{count} of {len(jobs)}" in shown
+        assert all(
+            word in shown for word in (jobs[count].level.title, *(each.name for each in jobs[count].entrants))
+        )
+        assert len(shown) <= 78
+    assert driving_row(jobs, {each.key for each in jobs}, 0.0) == ()

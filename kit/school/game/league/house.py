@@ -1,7 +1,7 @@
 """The programs of the house: entrants that come with the kit, so that whoever enters first has somebody to meet.
 
-They are one program at three speeds. Everybody meets them, and none of them wins a title. On the levels of a new league's races
-they have met each other: what they drive there comes with the kit, so that ratings mean something from the start.
+They are one program at three speeds. Everybody meets them, and none of them wins a title. On the levels of a new league they have
+met each other: what they drive and play there comes with the kit, so that ratings mean something from the start.
 """
 
 from __future__ import annotations

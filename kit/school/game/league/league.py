@@ -20,7 +20,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import cache, lru_cache
-from itertools import combinations
+from itertools import permutations
 from pathlib import Path
 from random import Random
 from typing import Any, ClassVar, Final
@@ -77,7 +77,7 @@ WALL_LIMIT_S: Final = 300.0
 MAX_JUDGED: Final = 20_000
 """Results whose judgement is kept in memory."""
 HOUSE_RESULTS: Final = Path(__file__).with_name("house_results")
-"""What the programs of the house drive on the levels of a new league's races: results as in a league's folder, and what came of
+"""What the programs of the house drive and play on the levels of a new league: results as in a league's folder, and what came of
 each, which a test judges again."""
 HOUSE_JUDGED: Final = HOUSE_RESULTS / "judged.json"
 _RUNNING_AGAIN: Final = threading.Lock()
@@ -216,21 +216,22 @@ class League(JobFolder):
         return [each for each in self.entries() if not each.problem]
 
     def jobs(self) -> list[LeagueJob]:
-        """All that is driven: nothing while nobody meets anybody; of the house alone, what comes with the kit. Races of short
-        levels come first, so that there are soon matches and a rating. Raises LeagueError."""
+        """All that is driven: nothing while nobody meets anybody; of the house alone, and at tag between two of it, what comes with
+        the kit. Races of short levels come first, so that there are soon matches and a rating. Raises LeagueError."""
         entrants, programme = self.entrants(), self.programme()
-        pairs = pairs_of(entrants)
+        is_house_alone = all(each.is_house for each in entrants)
         racing = entrants if len(entrants) > 1 else []
-        drives = [drive_job(level, each) for level in programme.races for each in racing]
-        if not pairs:
-            drives = [each for each in drives if each.key in house_judgements()]
-        games = [
-            tag_job(level, *players)
-            for level in programme.tag
-            for pair in pairs
-            for players in (pair, pair[::-1])
+        jobs = [
+            *(drive_job(level, each) for level in programme.races for each in racing),
+            *(tag_job(level, *pair) for level in programme.tag for pair in permutations(entrants, 2)),
         ]
-        return sorted([*drives, *games], key=lambda job: job.expected_s)
+        due = [
+            job
+            for job in jobs
+            if job.key in house_judgements()
+            or not (is_house_alone or (job.is_tag and all(each.is_house for each in job.entrants)))
+        ]
+        return sorted(due, key=lambda job: job.expected_s)
 
     # What a job folder says
 
@@ -374,11 +375,6 @@ def own_league(workspace: Workspace, folder: Path | None = None) -> League:
     if not (own / MANIFEST).exists():
         League.make(own, "Your league", RACES, TAG)
     return League(own, judgements)
-
-
-def pairs_of(entrants: Sequence[Entry]) -> list[tuple[Entry, Entry]]:
-    """Who plays tag with whom: all with each other, but for two of the house, which only race each other."""
-    return [pair for pair in combinations(entrants, 2) if not all(each.is_house for each in pair)]
 
 
 def drive_job(level: GameLevel, entry: Entry) -> LeagueJob:

@@ -8,14 +8,14 @@ from typing import Final, NamedTuple
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
 from kit.plain_text import join_names
 from kit.school.game.league.house import SPEEDS
-from kit.school.game.league.league import RACE_LIMIT, Programme
+from kit.school.game.league.league import RACE_LIMIT, LeagueJob, Programme
 from kit.school.game.league.standings import DRAW, Match, Place, Standings
 from kit.school.game.two_players import TAG_RULE
 
 TEXT = CellStyle.TEXT
 MOST_OPPONENTS: Final = 4
 """Of an entrant, in the table of its matches by level."""
-HOUSE: Final = f"{join_names(tuple(SPEEDS))}, the programs of the house, which have raced each other, and whatever others enter."
+HOUSE: Final = f"{join_names(tuple(SPEEDS))}, the programs of the house, which have met each other, and whatever others enter."
 
 
 class LeagueWords(NamedTuple):
@@ -46,10 +46,7 @@ def summary_blocks(standings: Standings, words: LeagueWords = COMMANDS) -> list[
     blocks: list[Block] = []
     champion, own = standings.champion, standings.own_places
     if not own or len(standings.places) < 2:
-        alone = "Nobody is" if not own else f"{own[0].entry.name} alone is"
-        has_house = standings.programme.has_house
-        others = " but the programs of the house." if has_house and not own else "."
-        blocks.append(Text(f"{alone} entered{others if has_house else ': a league needs two.'}"))
+        blocks.append(Text(_who_is_entered(own, has_house=standings.programme.has_house), Tone.BOLD))
         blocks += rules_blocks(standings.programme, words)
     elif standings.unread:
         read = standings.jobs - standings.unread
@@ -72,6 +69,14 @@ def summary_blocks(standings: Standings, words: LeagueWords = COMMANDS) -> list[
         blocks.append(Text(text, Tone.DIM, is_tight=True))
     blocks += [Text(f"{each.name} takes no part: {each.problem}.", Tone.WARN) for each in standings.refused]
     return blocks
+
+
+def _who_is_entered(own: Sequence[Place], *, has_house: bool) -> str:
+    """Of a league in which nobody meets anybody yet but the programs of the house."""
+    if not own and has_house:
+        return "Nobody is entered yet; the programs of the house wait for the first."
+    alone = f"{own[0].entry.name} alone is entered" if own else "Nobody is entered"
+    return f"{alone}{'.' if has_house else ': a league needs two.'}"
 
 
 def _among_the_house(places: Sequence[Place], own: Place) -> Text:
@@ -163,6 +168,12 @@ def level_grid(standings: Standings, name: str) -> Table:
 
 def _match_title(match: Match) -> str:
     return f"{'tag' if match.is_tag else 'race'}, {match.level.title}"
+
+
+def job_title(job: LeagueJob) -> str:
+    """What is driven, where, and by whom."""
+    what = "tag" if job.is_tag else "race"
+    return f"{what}, {job.level.title}: {' against '.join(each.name for each in job.entrants)}"
 
 
 def match_sentence(match: Match) -> str:

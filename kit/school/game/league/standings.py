@@ -19,7 +19,6 @@ from kit.school.game.league.league import (
     LeagueJob,
     Programme,
     drive_job,
-    pairs_of,
     tag_job,
 )
 from kit.school.game.league.ratings import Rating, rate
@@ -154,20 +153,20 @@ def _standings_of(
 ) -> Standings:
     """The standings by the jobs that have been judged; None: they have not been run."""
     entrants = [each for each in entries if not each.problem]
-    pairs, matches = pairs_of(entrants), []
+    matches = []
     for first, second in combinations(entrants, 2):
         for level in programme.races:
             drives = drive_job(level, first), drive_job(level, second)
             one, other = (judged.get(drive.key) for drive in drives)
             if one is not None and other is not None:
                 matches.append(race_match(drives, (one, other)))
-        for level in programme.tag if (first, second) in pairs else ():
+        for level in programme.tag:
             for pair in ((first, second), (second, first)):
                 job = tag_job(level, *pair)
                 game = judged.get(job.key)
                 if game is not None:
                     matches.append(tag_match(job, game))
-    if not pairs and not jobs:  # the house waits for somebody
+    if not jobs and all(each.is_house for each in entrants):  # it waits for somebody
         entrants = [each for each in entrants if not each.is_house]
     return Standings(
         programme.title,
