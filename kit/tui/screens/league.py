@@ -262,8 +262,8 @@ class LeagueScreen(RowsScreen[None]):
 
     @property
     def _note_rows(self) -> int:
-        """Rows for what is told below: of a match in two, so that nothing moves from one to the next."""
-        return 1 if self._match is None else 2
+        """Rows for what is told below: of a match and of a run in two, so that nothing moves from one to the next."""
+        return 1 if self._match is None and not self._driving else 2
 
     def _tables(self, standings: Standings, width: int, height: int) -> list[Row]:
         """Standings and matches, beside each other where there is room, or what a league is where nobody is entered."""
