@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from kit.document.rows import MARGIN, Row, broken, row, row_width, side_by_side
+from kit.document.rows import MARGIN, Row, broken, fitted, row, row_width, side_by_side
 from kit.render.encode import Encoder
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.levels import GameLevel
@@ -71,6 +71,8 @@ class DriveEnd:
     """The ladder with a row for each rung."""
     sentences: Sequence[str]
     """How it ended."""
+    failed_line: Sequence[Row]
+    """Of a program, at which it failed."""
     starts: Sequence[Row]
     times: Sequence[Row]
     """Beside others, and by sectors."""
@@ -196,6 +198,7 @@ def _fixed(
     """Who drove and how it ended; with what came of it, where it pushes nothing off the screen."""
     width = min(WIDTH, width)
     sentence = [line for each in told.sentences for line in broken(row(f" {each}"), width)]
+    sentence += [fitted(each, width) for each in told.failed_line]
     ending = drive_end_rows.ending(told.level, told.finish, width - MARGIN)
     earned = _earned(told, _width_beside_medal(told, height)) if earned is None else earned
     parts = (sentence, earned, told.times, told.ladder, told.won, ending)

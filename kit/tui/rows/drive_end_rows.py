@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from kit.document.rows import MARGIN, Row, row
+from kit.host.failure import Failure
 from kit.plain_text import counted, wrap
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder
@@ -47,6 +50,29 @@ def finish_sentence(finish: RaceFinish) -> str:
     if finish.is_stuck:
         return f"Stuck after {finish.seconds:.0f} s, touching something for {STUCK_TIME:.0f} s without moving{shortfall}."
     return f"Not finished in {finish.seconds:.0f} s{shortfall}."
+
+
+def failed_line(failure: Failure | None, program: Path | None) -> list[Row]:
+    """The line of a program at which it failed, and below it where in it Python cannot read on; nothing where that is not in
+    the program's own file."""
+    if failure is None or failure.line is None or program is None or failure.file != program.name:
+        return []
+    try:
+        text = program.read_text(encoding="utf-8", errors="replace")
+        line = text.splitlines()[failure.line - 1]
+    except (OSError, IndexError):
+        return []
+    number = f"   {failure.line:>4}  "
+    rows = [row((number, "dim"), (line.expandtabs(4), "code"))]
+    try:
+        ast.parse(text)
+    except SyntaxError as error:
+        if error.lineno == failure.line and error.offset:
+            before = line[: error.offset - 1].expandtabs(4)
+            rows.append(row(" " * (len(number) + len(before)), ("^", "bad")))
+    except (ValueError, RecursionError, MemoryError):
+        pass  # a NUL, or nested too deeply: the line alone
+    return rows
 
 
 def how_it_ended(finishes: Sequence[RaceFinish], counts: int, *, was_watched: bool = True) -> list[str]:

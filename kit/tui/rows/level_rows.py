@@ -170,8 +170,8 @@ def other_start(number: int, seconds: float) -> Row:
 
 def starts_rows(finishes: Sequence[RaceFinish], counts: int) -> list[Row]:
     """The times of a program's drives from all starts, ``-`` where it did not arrive, the one that counts in brackets; none for
-    a single drive."""
-    if len(finishes) < 2:
+    a single drive and for a program that never ran."""
+    if len(finishes) < 2 or all(each.failure is not None for each in finishes):
         return []
     times = [f"{each.seconds:.2f} s" if each.reached else "-" for each in finishes]
     times = [f"[{time}]" if number == counts else time for number, time in enumerate(times)]
@@ -208,6 +208,11 @@ PROGRAM_NOTES: Final = (
     ),
 )
 """What is said of drives by programs and agents where keys are explained."""
+NOT_BEGUN: Final = {
+    False: "The drive has not begun.",
+    True: "Today's run has not begun: d still drives it.",
+}
+"""What is said once Esc has stopped the preparation of a drive: of a level, of the maze of the day."""
 GIVES_UP: Final = row(
     (" This run counts for today.", "bold"), " Once more: Esc gives it up, r starts a practice run."
 )

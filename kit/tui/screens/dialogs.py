@@ -58,9 +58,10 @@ class MessageDialog(Dialog[None]):
     """
     CLOSES: Final = "any key closes"
 
-    def __init__(self, title: str, told: str | Sequence[Row]) -> None:
+    def __init__(self, title: str, told: str | Sequence[Row], *, passes_keys: bool = False) -> None:
+        """``passes_keys``: the key that closes it, unless that is Esc, is also for the screen below: nothing was asked."""
         super().__init__()
-        self._title = title
+        self._title, self._passes_keys = title, passes_keys
         self._shown_rows = tuple(map(row, told.splitlines())) if isinstance(told, str) else tuple(told)
         self._top = 0
 
@@ -105,6 +106,8 @@ class MessageDialog(Dialog[None]):
             self._top += SCROLL_ROWS[key]
             self._show()
         elif key not in MODIFIERS:
+            if self._passes_keys and key != "escape":
+                self.app.post_message(events.Key(event.key, event.character))
             self.dismiss()
 
     def on_click(self, event: events.Click) -> None:

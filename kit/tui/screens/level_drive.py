@@ -185,7 +185,7 @@ class LevelDrive(EditsFile, WatchScreen):
         has_begun = has_run(journal.events(subject=level.id), level)
         self._is_practice = has_begun and self._cut_short is None
         """Whether a run of this day's level has begun before: only the first one counts."""
-        self._is_left = self._has_warned = False
+        self._is_left = self._has_warned = self._waits = False
         if self._is_daily and not self._is_practice:
             self._ghost_paths = ()  # finding the way is what the first run is about
         self.wish: Wish = "back"
@@ -219,6 +219,7 @@ class LevelDrive(EditsFile, WatchScreen):
     def open_world(self) -> None:
         self._referee, self._is_over, self._result_row = None, False, ()
         self._recorder, self._behind, self._notice, self._has_warned = None, None, None, False
+        self._waits = False
         self._comparison = None if self._reference is None else GhostComparison(self._reference)
         scenario = self._level.find_scenario()
         self._scenario: Scenario = scenario
@@ -306,6 +307,18 @@ class LevelDrive(EditsFile, WatchScreen):
                 self._take_cut_short()
                 self.host.resume_when_driven()
         self.host.post(lambda session: session.keys.publish(messages, strength))
+
+    def on_screen_suspend(self) -> None:
+        """Behind a dialog the drive waits: its clock would run on unseen."""
+        runs = self.has_started and not self._is_over and self.view is not None and not self.view.paused
+        if runs and self._cut_short is None:
+            self._waits = True
+            self.host.set_paused(True)
+
+    def on_screen_resume(self) -> None:
+        if self._waits:
+            self._waits = False
+            self.host.set_paused(False)
 
     # What is shown
 

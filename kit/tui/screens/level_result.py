@@ -139,6 +139,7 @@ class DriveResultScreen(EditsFile, ModalScreen[Wish]):
             ladder,
             rungs,
             drive_end_rows.how_it_ended(result.finishes or [finish], record.counts if result.finishes else 0),
+            drive_end_rows.failed_line(finish.failure, result.program),
             level_rows.starts_rows(result.finishes, record.counts),
             [
                 *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
@@ -335,7 +336,7 @@ class DriveResultScreen(EditsFile, ModalScreen[Wish]):
         self._note = ()
         self._show()
         shown = [*(row(each) for each in rows), row(), *map(row, said.splitlines())]
-        self.app.push_screen(MessageDialog("A card to share", shown))
+        self.app.push_screen(MessageDialog("A card to share", shown, passes_keys=True))
 
 
 def scene_of_drive(result: DriveResult) -> Scene:

@@ -690,6 +690,7 @@ class LevelsScreen(RowsScreen[None]):
         finally:
             shown.stop()
             self._doing = self._doing_level = ""
+            self._show()
         screen = LevelDrive(
             self._theme,
             level,
@@ -747,6 +748,15 @@ class LevelsScreen(RowsScreen[None]):
         await self.app.push_screen_wait(
             RecordingScreen(self._theme, film_scenario(level, recording.seed), recording, who)
         )
+
+    def action_back(self) -> None:
+        """Gives up a drive that is being prepared; else leaves the list."""
+        if not self._doing:
+            super().action_back()
+            return
+        is_daily = self._doing_level.startswith(DAILY_PREFIX)
+        self._news = level_rows.NOT_BEGUN[is_daily]
+        self.workers.cancel_group(self, "drive")
 
     def action_leaderboard(self) -> None:
         self.app.push_screen(LeaderboardScreen(self._theme, self._progress, self._workspace))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 
 import pytest
 
@@ -14,7 +15,7 @@ from kit.school.game.levels import all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import GameSummary, LevelProgress, level_progress
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.tui.rows.drive_end_rows import finish_sentence, how_it_ended
+from kit.tui.rows.drive_end_rows import failed_line, finish_sentence, how_it_ended
 from kit.tui.rows.ladder_rows import LADDERS
 from kit.tui.rows.level_map_rows import map_places, map_rows
 from kit.tui.rows.level_rows import (
@@ -192,3 +193,22 @@ def test_of_a_program_first_the_drive_that_was_watched_is_told_and_then_the_one_
     assert how_it_ended([failed] * 5, 2) == [finish_sentence(failed)]
     (both,) = how_it_ended([lost, arrived, lost, late, lost], 2)
     assert both.startswith(finish_sentence(lost))
+
+
+def test_a_program_that_cannot_be_read_is_shown_with_the_place_in_its_line(tmp_path: Path) -> None:
+    program = tmp_path / "mine.py"
+    program.write_text("speed = 1\nif True:\n\tturn = (1 2)\n")
+    failure = Failure(FailureKind.SYNTAX, "SyntaxError: invalid syntax", "mine.py", 3)
+    line, caret = map(row_text, failed_line(failure, program))
+    assert line.split() == ["3", "turn", "=", "(1", "2)"]
+    assert line[caret.index("^")] == "1"
+    assert len(failed_line(replace(failure, line=1), program)) == 1, "Python can read this one"
+    for other in (
+        replace(failure, file="other.py"),
+        replace(failure, line=9),
+        replace(failure, line=None),
+        None,
+    ):
+        assert failed_line(other, program) == []
+    program.unlink()
+    assert failed_line(failure, program) == []

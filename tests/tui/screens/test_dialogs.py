@@ -46,6 +46,27 @@ def test_keys_that_come_at_once_with_the_one_that_closes_reach_the_screen_below(
     assert notes.keys == ["m", "w"]
 
 
+@pytest.mark.parametrize(
+    ("passes_keys", "key", "reached"), [(True, "r", ["r"]), (True, "escape", []), (False, "r", [])]
+)
+def test_the_key_that_closes_what_asks_nothing_is_for_the_screen_below_too(
+    passes_keys: bool, key: str, reached: list[str]
+) -> None:
+    notes = KeyNotes()
+
+    async def run() -> None:
+        async with App[None]().run_test() as pilot:
+            await pilot.app.push_screen(notes)
+            await pilot.app.push_screen(MessageDialog("Title", [], passes_keys=passes_keys))
+            await pilot.press(key)
+            await until(pilot, lambda: pilot.app.screen is notes, "the screen below")
+            await pilot.press("x")
+            await until(pilot, lambda: notes.keys[-1:] == ["x"], "the next key")
+
+    asyncio.run(asyncio.wait_for(run(), 20))
+    assert notes.keys == [*reached, "x"]
+
+
 LONG = "one word after the other, " * 8
 
 

@@ -101,6 +101,28 @@ def test_a_drive_behind_a_dialog_is_fitted_to_a_terminal_that_is_resized(tmp_pat
         stage(lambda theme: LevelDrive(theme, level, [], journal, workspace), scene, size=(80, 24))
 
 
+def test_a_drive_waits_behind_a_dialog_and_goes_on_after_it(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    level = find_level("first-drive")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LevelDrive)
+        await until(pilot, lambda: screen.view is not None, "the world")
+        screen.drive_keys_changed(("p_up",), screen.drive.state)
+        await until(pilot, lambda: screen.view is not None and screen.view.time_s > 0.0, "the clock")
+        await pilot.press("question_mark")
+        await until(pilot, lambda: screen.view is not None and screen.view.paused, "the pause")
+        await pilot.press("escape")
+        await until(pilot, lambda: screen.view is not None and not screen.view.paused, "the drive")
+        await pilot.press("p", "question_mark", "escape")
+        await until(pilot, lambda: pilot.app.screen is screen, "the screen")
+        await until(pilot, lambda: screen.view is not None and screen.view.paused, "the player's own pause")
+
+    with ProgressJournal(workspace.folder) as journal:
+        stage(lambda theme: LevelDrive(theme, level, [], journal, workspace), scene)
+
+
 STOPS = "raise RuntimeError('not yet')\n"
 
 

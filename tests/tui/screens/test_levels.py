@@ -33,6 +33,7 @@ from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui import flourish
 from kit.tui.app import KitApp
+from kit.tui.rows import level_rows
 from kit.tui.rows.drive_end_page import (
     LADDER_COLUMNS,
     LEAST_BESIDE_ROWS,
@@ -194,6 +195,29 @@ def test_on_a_small_screen_the_map_of_the_chosen_level_stands_beside_what_is_sai
         assert len(seen) == 2
 
     play(scene, progress, tmp_path / "desk", (80, 24))
+
+
+def test_esc_gives_up_a_drive_that_is_being_prepared_and_stays_in_the_list(
+    progress: ProgressJournal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    may_go_on = threading.Event()
+
+    def held(*_: object) -> tuple[()]:
+        may_go_on.wait(60.0)
+        return ()
+
+    monkeypatch.setattr(levels_module, "level_ghosts", held)
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: "Preparing the ghosts" in flat(pilot.app))
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: level_rows.NOT_BEGUN[True] in flat(pilot.app))
+        assert "Preparing" not in flat(pilot.app)
+        assert pilot.app.screen is screen
+        may_go_on.set()
+        assert progress.events(subject=daily_level(today()).id) == []
+
+    play(scene, progress, tmp_path / "desk", level=daily_level(today()))
 
 
 def test_on_a_wide_screen_the_chosen_level_is_shown(progress: ProgressJournal, tmp_path: Path) -> None:
