@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from asyncio import to_thread
+from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Horizontal, Vertical
+from textual.containers import Container, Horizontal
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import at_both_edges, lines_shown, row
+from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons.catalogue import LessonEntry
+from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.records import Lesson
 from kit.school.news import take_news
 from kit.school.progress import ProgressError
@@ -36,9 +40,28 @@ LIST_WIDTH: Final = 76
 """Columns of the list where the chosen lesson is shown beside it."""
 LEAST_DETAILS: Final = 42
 """Columns beside the list from which on the chosen lesson is shown there, not below it."""
-LEAST_PICTURE: Final = 8
-"""Rows that a picture of the lesson's world must have at least."""
+LEAST_PICTURE, MOST_PICTURE = 6, 24
+"""Rows of a picture of the lesson's world."""
+DETAILS_WIDTH: Final = 60
+"""Columns of the chosen lesson's words where its pictures stand beside them."""
+LEAST_PICTURES: Final = 42
+"""Columns beside the words from which on the pictures stand there, not below them."""
+LEVEL_ROWS: Final = 17
+"""Rows of the maps of the levels that a lesson opens, with their titles, where its world is above them."""
 MARKS: Final = (("[x] [~] [ ]", "done, begun, not begun"), ("[!]", "cannot be read"))
+
+
+@dataclass(frozen=True, slots=True)
+class LessonSight:
+    """What is shown beside the list of a lesson, and takes a moment to read."""
+
+    scene: Scene | None = None
+    """Its world; where it has none, of the first level that it opens."""
+    has_world: bool = False
+    picture: tuple[str, ...] = ()
+    """Where it has no world, the first picture of its steps."""
+    levels: tuple[GameLevel, ...] = ()
+    """The levels that it opens."""
 
 
 class LessonsScreen(RowsScreen[None]):
@@ -47,19 +70,29 @@ class LessonsScreen(RowsScreen[None]):
     AUTO_FOCUS = ""
     screen_actions = ScreenActions("lessons", ("choose", "open", "help", "back"))
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (LIST_WIDTH + LEAST_DETAILS, "-wide")]  # noqa: RUF012 - Textual's own attribute
+    HORIZONTAL_BREAKPOINTS = [  # noqa: RUF012 - Textual's own attribute
+        (0, "-narrow"),
+        (LIST_WIDTH + LEAST_DETAILS, "-wide"),
+        (LIST_WIDTH + DETAILS_WIDTH + LEAST_PICTURES, "-broad"),
+    ]
     DEFAULT_CSS = f"""
     LessonsScreen {{ layout: vertical; }}
     LessonsScreen #heading {{ height: 2; }}
-    LessonsScreen #middle {{ height: auto; }}
-    LessonsScreen #side {{ display: none; }}
-    LessonsScreen #about {{ height: 1fr; }}
     LessonsScreen #keys {{ height: 1; }}
-    LessonsScreen.-wide #middle {{ height: 1fr; }}
-    LessonsScreen.-wide #list {{ width: {LIST_WIDTH}; }}
-    LessonsScreen.-wide #side {{ display: block; padding: 0 2 0 0; }}
-    LessonsScreen.-wide #picture {{ height: 1fr; margin: 1 0; }}
-    LessonsScreen.-wide #about {{ display: none; }}
+    LessonsScreen #middle, LessonsScreen #about {{ height: 1fr; }}
+    LessonsScreen #list {{ width: {LIST_WIDTH}; }}
+    LessonsScreen #side {{ padding: 0 2 0 0; }}
+    LessonsScreen #about, LessonsScreen #levels {{ display: none; }}
+    LessonsScreen #picture, LessonsScreen #shown {{ height: 1fr; }}
+    LessonsScreen #picture {{ margin: 1 0 0 0; }}
+    LessonsScreen.-narrow #middle {{ height: auto; }}
+    LessonsScreen.-narrow #list {{ width: 1fr; }}
+    LessonsScreen.-narrow #side {{ display: none; }}
+    LessonsScreen.-narrow #about {{ display: block; }}
+    LessonsScreen.-broad #side {{ layout: horizontal; }}
+    LessonsScreen.-broad #details {{ width: {DETAILS_WIDTH}; }}
+    LessonsScreen.-broad #picture {{ margin: 0 0 1 0; max-height: {MOST_PICTURE}; }}
+    LessonsScreen.-broad #levels {{ display: block; height: auto; }}
     """
 
     def __init__(self, theme: Theme, store: StudentStore, overview: StudentOverview) -> None:
@@ -73,16 +106,19 @@ class LessonsScreen(RowsScreen[None]):
         first = overview.going_on
         self._at = overview.shelf.index(first) if first is not None else 0
         self._picture = WorldView(lambda: theme.encoder, theme.palette, id="picture")
-        self._beside: dict[str, tuple[Scene | None, tuple[GameLevel, ...]]] = {}
-        """Of a lesson what is shown beside the list and takes a moment to read: its world, the levels that it opens."""
+        self._sights: dict[str, LessonSight] = {}
+        self._maps: dict[tuple[str, int, int], list[Row]] = {}
+        """The maps of the levels that a lesson opens, in so many columns and rows."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         with Horizontal(id="middle"):
             yield TextRows(id="list")
-            with Vertical(id="side"):
+            with Container(id="side"):
                 yield TextRows(id="details")
-                yield self._picture
+                with Container(id="shown"):
+                    yield self._picture
+                    yield TextRows(id="levels")
         yield TextRows(id="about")
         yield TextRows(id="keys")
 
@@ -104,7 +140,7 @@ class LessonsScreen(RowsScreen[None]):
             return
         shelf, chosen = self._overview.shelf, self.chosen
         told = f"  {self._overview.done} of {len(shelf)} done" if shelf else "  none were installed"
-        is_wide = self.has_class("-wide")
+        is_wide = not self.has_class("-narrow")
         room = max(1, self.size.height - 3 - (0 if is_wide else SUMMARY_ROWS))
         lines = lesson_list_rows.lines(shelf, chosen)
         at = next((number for number, (entry, _) in enumerate(lines) if entry is chosen), 0)
@@ -128,20 +164,39 @@ class LessonsScreen(RowsScreen[None]):
 
     @work(exclusive=True, group="beside")
     async def _show_beside(self) -> None:
-        """The chosen lesson beside the list: its words at once, its world as soon as it is read."""
+        """The chosen lesson beside the list: its words at once, its pictures as soon as they are read."""
         chosen = self.chosen
         if chosen is None:
             return
-        scene, levels = self._beside.get(chosen.name, (None, ()))
-        width = self.size.width - LIST_WIDTH - 2
-        details = lesson_list_rows.details(chosen, levels, width)
-        room = self.size.height - 3
+        is_broad = self.has_class("-broad")
+        sight = self._sights.get(chosen.name, LessonSight())
+        width, room = self.size.width - LIST_WIDTH - 2, self.size.height - 3
+        columns = width - DETAILS_WIDTH
+        # Beside the words the levels have maps and titles of their own.
+        details = lesson_list_rows.details(
+            chosen, () if is_broad else sight.levels, min(width, DETAILS_WIDTH - 2) if is_broad else width
+        )
         self._rows("details").show_all(details[:room])
-        self._picture.display = scene is not None and room - len(details) >= LEAST_PICTURE
-        if scene is not None:
-            self._picture.show(scene)
-        elif chosen.lesson is not None and chosen.name not in self._beside:
-            self._beside[chosen.name] = await to_thread(_read_world_and_levels, chosen.lesson)
+        has_picture = sight.scene is not None and (
+            sight.has_world if is_broad else room - len(details) >= LEAST_PICTURE
+        )
+        self._picture.display = has_picture
+        if has_picture and sight.scene is not None:
+            self._picture.show(sight.scene)
+        if is_broad:
+            above = [] if sight.has_world or not sight.picture else [*map(row, sight.picture), row()]
+            left = room - len(above)
+            rows = min(LEVEL_ROWS, left) if sight.has_world else min(MOST_PICTURE, left)
+            maps = self._maps.get((chosen.name, columns, rows), [])
+            self._rows("levels").show_all([*above, *maps])
+            if sight.levels and not maps:
+                glyphs = self._theme.terminal.glyphs.value
+                maps = await to_thread(_level_maps, sight.levels, columns, rows, glyphs)
+                self._maps[chosen.name, columns, rows] = maps
+                if self.query(TextRows):
+                    self._rows("levels").show_all([*above, *maps])
+        if chosen.lesson is not None and chosen.name not in self._sights:
+            self._sights[chosen.name] = await to_thread(_read_sight, chosen.lesson)
             if self.query(TextRows):
                 self._show_beside()
 
@@ -188,16 +243,32 @@ class LessonsScreen(RowsScreen[None]):
         self.app.push_screen(HelpDialog("Lessons", self.screen_actions, MARKS))
 
 
-def _read_world_and_levels(lesson: Lesson) -> tuple[Scene | None, tuple[GameLevel, ...]]:
-    """The lesson's world and the levels that it opens; what cannot be read is told when the lesson is opened."""
+def _read_sight(lesson: Lesson) -> LessonSight:
+    """The lesson's world or picture and the levels that it opens; what cannot be read is told when the lesson is opened."""
     # of no use to the first frame
-    from kit.tui.screens.level_pictures import scene_of_lesson
+    from kit.tui.screens.level_pictures import scene_of, scene_of_lesson
 
-    try:
+    levels: tuple[GameLevel, ...] = ()
+    scene, has_world = None, False
+    with suppress(WorldError, FileNotFoundError):
         levels = levels_of_lesson(lesson.name)
-    except (WorldError, FileNotFoundError):
-        levels = ()
-    try:
-        return scene_of_lesson(lesson), levels
-    except (WorldError, LookupError, OSError):
-        return None, levels
+    with suppress(WorldError, LookupError, OSError):
+        scene = scene_of_lesson(lesson)
+        has_world = scene is not None
+        scene = scene_of(levels[0]) if scene is None and levels else scene
+    return LessonSight(scene, has_world, _first_picture(lesson), levels)
+
+
+def _first_picture(lesson: Lesson) -> tuple[str, ...]:
+    """The picture of the lesson's first step that has one, of messages or of characters."""
+    graphs = (graph_rows(each.graph, at_end=False) for each in lesson.steps if each.graph is not None)
+    pictures = (each.picture.splitlines() for each in lesson.steps if each.picture)
+    return tuple(next(chain(graphs, pictures), []))
+
+
+def _level_maps(levels: Sequence[GameLevel], columns: int, rows: int, glyphs: str) -> list[Row]:
+    """The maps of the levels that a lesson opens, with a line that says so."""
+    from kit.tui.screens.level_pictures import pictures_of  # of no use to the first frame
+
+    drawn = pictures_of(levels, columns, rows - 2, glyphs)
+    return [row(("Opens in the game", "title")), row(), *(each for each in drawn if row_text(each))]

@@ -23,6 +23,7 @@ from kit.school.game.ghosts import REFERENCE, Ghost
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import DriverKind
 from kit.school.game.references import reference_seconds
+from kit.school.lessons.reading import exercise_scene
 from kit.school.lessons.records import Lesson
 from kit.tui.rows.level_card_rows import Company, Rival, best_splits
 
@@ -99,8 +100,8 @@ def task_picture(task: str, columns: int, rows: int, glyphs: str) -> list[Row]:
 
 
 def pictures_of(levels: Sequence[GameLevel], width: int, height: int, glyphs: str) -> list[Row]:
-    """Small pictures of levels below their titles and the reference drives' times, two or three beside each other."""
-    across = 3 if width >= ROOM_FOR_THREE else 2
+    """Small pictures of levels below their titles and the reference drives' times, up to two or three beside each other."""
+    across = min(len(levels), 3 if width >= ROOM_FOR_THREE else 2)
     columns, rows = width // across, height // math.ceil(len(levels) / across)
     made: list[Row] = []
     for start in range(0, len(levels), across):
@@ -123,9 +124,11 @@ def first_scene(scenario: Scenario) -> Scene:
 
 
 def scene_of_lesson(lesson: Lesson) -> Scene | None:
-    """The world of the lesson's first step that shows one; None where none does. Raises WorldError and the like."""
-    scenes = (step.scene for step in lesson.steps if step.scene is not None)
-    first = next(scenes, None)
+    """The world of the lesson's first step that shows one, else of the first exercise that is checked in one; None where none is.
+    Raises WorldError and the like."""
+    exercises = (step.exercise for step in lesson.steps if step.exercise is not None)
+    scenes = (*(step.scene for step in lesson.steps), *map(exercise_scene, exercises))
+    first = next((each for each in scenes if each is not None), None)
     return None if first is None else first_scene(find_scenario(first.map_name, first.case))
 
 

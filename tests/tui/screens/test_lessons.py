@@ -8,6 +8,7 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
+from kit.school.game.levels import levels_of_lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.student_store import StudentStore
@@ -15,6 +16,8 @@ from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 
 WALL = "█"
+MAP = {*map(chr, range(0x2801, 0x2900)), *map(chr, range(0x2580, 0x25A0))}
+"""Characters of walls in large and small pictures of a world."""
 
 
 @pytest.fixture
@@ -46,6 +49,36 @@ def test_a_wide_screen_shows_the_chosen_lesson_with_its_steps_and_its_world(stor
         assert not any(WALL in line[84:] for line in rows(pilot))
 
     stage(lambda theme: LessonsScreen(theme, store, store.read_overview()), scene, size=(200, 50))
+
+
+@pytest.mark.parametrize(("size", "number"), [((120, 35), "D4"), ((200, 50), "A2")], ids=str)
+def test_a_wide_screen_shows_the_maps_of_what_a_lesson_opens_also_where_it_has_no_world(
+    tmp_path: Path, size: tuple[int, int], number: str
+) -> None:
+    """Small as the room is, one map; where there is more, each level's with its title, below the lesson's own world."""
+    store = StudentStore(prepare_workspace(tmp_path / "home"))
+    at = next(place for place, each in enumerate(store.read_overview().shelf) if each.number == number)
+    entry = store.read_overview().shelf[at]
+    levels = levels_of_lesson(entry.name)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press(*["down"] * at)
+        await seen(pilot, entry.title)
+
+        def beside() -> list[str]:
+            return [line[76:] for line in rows(pilot)]
+
+        await until(pilot, lambda: any(set(line) & MAP for line in beside()), "a map")
+        if size == (200, 50):
+            for level in levels:
+                await seen(pilot, level.title)
+            opened = next(place for place, line in enumerate(beside()) if levels[0].title in line)
+            await until(
+                pilot, lambda: any(set(line) & MAP for line in beside()[:opened]), "the lesson's world"
+            )
+            assert any(set(line) & MAP for line in beside()[opened:])
+
+    stage(lambda theme: LessonsScreen(theme, store, store.read_overview()), scene, size=size)
 
 
 def test_a_small_screen_says_what_the_chosen_lesson_is_about_below_the_list(store: StudentStore) -> None:
