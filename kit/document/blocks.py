@@ -31,6 +31,8 @@ class Tone(StrEnum):
     CODE = "code"
     KEY = "press"
     """A key to press."""
+    BRONZE = "bronze"
+    """The letter of that medal; the others have tones of their weight."""
     TITLE = "title"
     """The name of a screen or of a part of it."""
     CHOSEN = "chosen"

@@ -104,7 +104,7 @@ VISITS: Final = {
     "daily": ScreenVisit(("game",), ("d",), 4.0),
     "leaderboard": ScreenVisit(("game",), ("f",), 3.0),
     "challenges": ScreenVisit(("game",), ("\x1b[D",), 3.0),
-    "puzzle": ScreenVisit(("game",), ("\x1b[D", "\r", "\x1b[C\x1b[D" * 17, "c"), 3.0),
+    "puzzle": ScreenVisit(("game",), ("\x1b[D", "\r", "\x1b[C" * 7 + "\x1b[B\x1b[A" * 6, "c"), 3.0),
     "puzzle-lasers": ScreenVisit(("game",), ("\x1b[D", *["\x1b[B"] * 8, "\r", "\x1b[C\x1b[C\x1b[B "), 3.0),
     "puzzle-layers": ScreenVisit(("game",), ("\x1b[D", *["\x1b[B"] * 2, "\r", "  \x1b[B "), 3.0),
     "nodes": ScreenVisit(("drive", "maze", "--controller", "random_walk"), ("n",), 4.0),

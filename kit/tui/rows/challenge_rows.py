@@ -11,17 +11,17 @@ from pathlib import Path
 from typing import Final
 
 from kit.dialogue.dialogue import Panel
+from kit.document.blocks import CellStyle, Column, Table, Tone, ToneText
 from kit.document.rows import (
     MARGIN,
     Row,
-    at_both_edges,
     broken,
-    lines_shown,
     row,
     row_text,
     row_width,
     side_by_side,
 )
+from kit.document.tables import list_rows
 from kit.layers.drawing.spans import GlyphStyle
 from kit.plain_text import counted, wrap
 from kit.school.game.board import Board
@@ -36,15 +36,12 @@ from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressEvent
 from kit.tui.rows.chart_rows import CHART_ROWS, stretched_chart
 from kit.tui.rows.drive_end_rows import needed_rows
-from kit.tui.rows.level_rows import TITLE_WIDTH
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
 from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.rows.progress_marks import share_bar
 from kit.world.problems import WorldError
 
-TITLE_COLUMNS: Final = TITLE_WIDTH + 8
-HEADER: Final = f"  {'puzzle':<{TITLE_COLUMNS}} medal  lesson"
 LEAST_TEXT: Final = 36
 """Columns of a puzzle's text beside its board, at least."""
 WIDEST_TEXT: Final = 76
@@ -92,22 +89,17 @@ def challenge_list(
     """One row for each challenge, of those for which there is room; the first row says which these are.
     ``medals``: the best of each that has one, by its id."""
     number = next(number for number, each in enumerate(challenges) if each.id == chosen)
-    top = first_shown(len(challenges), number, room)
-    where = lines_shown(top, min(room, len(challenges)), len(challenges))
-    rows = [
-        at_both_edges(row((HEADER, "dim")), row((where, "dim")), width) if where else row((HEADER, "dim"))
-    ]
-    for each in challenges[top : top + room]:
-        medal, is_chosen = medals.get(each.id, Medal.NONE), each.id == chosen
-        rows.append(
-            row(
-                ("> " if is_chosen else "  ", "bold"),
-                (f"{each.title:<{TITLE_COLUMNS}} ", "chosen" if is_chosen else ""),
-                (f"{MEDAL_SIGNS[medal]:<7}", MEDAL_STYLES[medal]),
-                (lesson_number(each.lesson), "dim"),
-            )
+    best = [medals.get(each.id, Medal.NONE) for each in challenges]
+    cells = tuple(
+        (
+            each.title,
+            ToneText(MEDAL_SIGNS[medal], MEDAL_STYLES[medal]),
+            ToneText(lesson_number(each.lesson), Tone.DIM),
         )
-    return rows
+        for each, medal in zip(challenges, best, strict=True)
+    )
+    columns = tuple(Column(title, CellStyle.TEXT) for title in ("puzzle", "", "lesson"))
+    return list_rows(Table("puzzles", "", columns, cells), width, room + 1, number)
 
 
 def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]:

@@ -9,15 +9,16 @@ from typing import Final
 from textual.binding import Binding, BindingType
 
 from kit.dialogue.actions import ScreenActions
+from kit.document.blocks import Tone, ToneText, labelled_table
+from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row
-from kit.plain_text import wrap
 
 FOOTER_ROWS: Final = 2
 """Rows of a line of keys below a text: an empty one sets it apart."""
-KEY_WIDTH: Final = 17
-"""Columns of the keys on a help page."""
-TEXT_WIDTH: Final = 52
-"""Columns of what is said beside them."""
+HELP_WIDTH: Final = 69
+"""Columns of a help page."""
+NOTHING: Final = ToneText("", Tone.PLAIN)
+"""In the place of a key in the row between two blocks of a help page."""
 KEPT: Final = frozenset(("help", "back", "quit", "palette"))
 """Actions that a narrow line of keys leaves out last."""
 MORE: Final = "more"
@@ -73,12 +74,8 @@ def help_page(
         [(screen[each].keys, screen[each].help) for each in ids if each not in without and each != "help"]
         for ids in (screen.footer, screen.off_footer)
     ]
-    rows: list[Row] = []
+    told: list[tuple[ToneText, str]] = []
     for block in (*blocks, *notes):
-        if block:
-            rows.append(row())
-        for key, text in block:
-            first, *others = wrap(text, TEXT_WIDTH)
-            rows.append(row((f" {key:<{KEY_WIDTH}}", "title"), first))
-            rows += [row(" " * (KEY_WIDTH + 1), each) for each in others]
-    return tuple(rows)
+        told += [(NOTHING, "")] if block else []
+        told += [(ToneText(key, Tone.TITLE), text) for key, text in block]
+    return tuple(rows_of([labelled_table(told)], Page(HELP_WIDTH, margin=1)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from kit.document.blocks import Tone
 from kit.school.game.medal import Medal
 
 STAR, NO_STAR = "*", "."
@@ -17,10 +18,10 @@ MEDAL_SIGNS: Final = {
     Medal.RECORD: "R",
 }
 MEDAL_STYLES: Final = {
-    Medal.NONE: "dim",
-    Medal.BRONZE: "bronze",
-    Medal.SILVER: "bold",
-    Medal.GOLD: "warn",
-    Medal.MASTER: "good",
-    Medal.RECORD: "good",
+    Medal.NONE: Tone.DIM,
+    Medal.BRONZE: Tone.BRONZE,
+    Medal.SILVER: Tone.BOLD,
+    Medal.GOLD: Tone.WARN,
+    Medal.MASTER: Tone.GOOD,
+    Medal.RECORD: Tone.GOOD,
 }

@@ -16,7 +16,9 @@ from textual.containers import Container
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
-from kit.document.rows import MARGIN, Row, at_both_edges, broken, fitted, row, side_by_side
+from kit.document.blocks import Tone, ToneText, labelled_table
+from kit.document.layout import Page, rows_of
+from kit.document.rows import MARGIN, Row, at_both_edges, fitted, row, side_by_side
 from kit.tui.input.drive import MODE_TEXTS, DriveState
 from kit.tui.input.drive_keys import DRIVE_KEYS, DriveKey
 from kit.tui.input.modes import Clock, KeyEventKind
@@ -41,10 +43,10 @@ KEPT: Final = 50
 """Lines of what arrived: more than any screen shows."""
 WORDS: Final = MappingProxyType(
     {
-        KeyEventKind.PRESS: ("press", "good"),
-        KeyEventKind.REPEAT: ("repeat", "dim"),
-        KeyEventKind.RELEASE: ("release", "bold"),
-        None: ("timeout", "warn"),
+        KeyEventKind.PRESS: ("press", Tone.GOOD),
+        KeyEventKind.REPEAT: ("repeat", Tone.DIM),
+        KeyEventKind.RELEASE: ("release", Tone.BOLD),
+        None: ("timeout", Tone.WARN),
     }
 )
 """What came, in a word and its style."""
@@ -196,8 +198,7 @@ class KeyTestScreen(RowsScreen[None], DriveScreen):
         """What may arrive, and what has, the newest first; the one gives way to the other where there is no room for both."""
         width, height = self._rows("log").size
         told = [
-            row((f" {word:<9}", WORDS[kind][1]), text)
-            for (word, text), kind in zip(MEANINGS, WORDS, strict=True)
+            (ToneText(word, WORDS[kind][1]), text) for (word, text), kind in zip(MEANINGS, WORDS, strict=True)
         ]
         meant = _part("what may arrive", told, width)
         arrived = [ruled_title("what arrived", width, "newest first"), *(each.row() for each in self._log)]
@@ -208,23 +209,23 @@ class KeyTestScreen(RowsScreen[None], DriveScreen):
             meant += more if told and len(meant) + len(more) + ROOMY_LOG <= height else []
         return [*meant, row(), *arrived]
 
-    def _modes(self) -> list[Row]:
+    def _modes(self) -> list[tuple[ToneText, str]]:
         """All modes; the one that is used now is marked."""
         chosen = self.drive.choice.mode
         return [
-            row((f"{'>' if mode == chosen else ' '}{mode:<9}", "bold" if mode == chosen else "dim"), text)
+            (ToneText(f"> {mode}", Tone.BOLD) if mode == chosen else ToneText(f"  {mode}", Tone.DIM), text)
             for mode, text in MODE_TEXTS.items()
         ]
 
-    def _facts(self) -> list[Row]:
+    def _facts(self) -> list[tuple[ToneText, str]]:
         """What lies between the keyboard and the kit, as far as it is known."""
         terminal = self._terminal
         if terminal is None:
             return []
         found = (("link", terminal.remote.reason), ("between", terminal.between.reason))
-        return [row((f" {name:<9}", "dim"), reason) for name, reason in found]
+        return [(ToneText(name, Tone.DIM), reason) for name, reason in found]
 
 
-def _part(title: str, told: Sequence[Row], width: int) -> list[Row]:
-    """Rows below their title, each on as many as it needs."""
-    return [ruled_title(title, width), *(each for parts in told for each in broken(parts, width))]
+def _part(title: str, told: Sequence[tuple[ToneText, str]], width: int) -> list[Row]:
+    """Words and what they mean, below their title."""
+    return [ruled_title(title, width), *rows_of([labelled_table(told)], Page(width - 1, margin=1))]

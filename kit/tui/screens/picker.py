@@ -234,5 +234,7 @@ class Picker(Dialog[str | None]):
         room = max(20, min(self._columns, self.size.width) - COLUMNS_AROUND - self._width)
         lines = wrap(choice.text, room, first=" " * (len(name) - self._width))
         lines[:1] = [each.lstrip() for each in lines[:1]]
-        text = name + ("\n  " + " " * self._width).join(lines)
-        return Text.assemble("> " if is_chosen else "  ", (text, LOOKS["chosen"] if is_chosen else ""))
+        text = ("\n  " + " " * self._width).join(lines)
+        if is_chosen:
+            return Text.assemble("> ", (name + text, LOOKS["chosen"]))
+        return Text.assemble("  ", name, (text, LOOKS["dim"]))

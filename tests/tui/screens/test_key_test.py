@@ -133,7 +133,7 @@ def test_what_is_known_of_the_terminal_stands_above_what_arrived_where_there_is_
         lines = rows(pilot.app)
         assert any("press    up" in line or "press    w" in line for line in lines)
         assert any("There is no sign of tmux" in line for line in lines) is (size[0] == 120)
-        assert any(">latch" in line for line in lines) is (size[0] == 120), "the mode that is used"
+        assert any("> latch" in line for line in lines) is (size[0] == 120), "the mode that is used"
 
     stage(lambda theme: KeyTestScreen(theme.terminal), scene, size=size)
 
