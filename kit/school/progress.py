@@ -67,6 +67,7 @@ class EventKind(StrEnum):
     ABOUT = "about"
     DEFENCE = "defence"
     NEWS = "news"
+    TAG = "tag"
 
 
 YEARS: Final = range(2000, 2100)

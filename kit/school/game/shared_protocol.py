@@ -13,12 +13,13 @@ from kit.geometry import Pose
 from kit.host.wire import Json, ProtocolError, boolean, integer, items, number, text
 from kit.school.game.two_players import PLAYERS, SharedGameState, SharedMode, SharedPhase
 
-VERSION: Final = 5
+VERSION: Final = 6
 MAX_FRAME: Final = 4096
 """Bytes of a frame, in both directions."""
 MAX_PLAYER_NAME: Final = 24
 MAX_LEVEL_NAME: Final = 64
 MAX_WATCHING: Final = 8
+MAX_CATCHES: Final = 64
 """Names of spectators in a frame."""
 MAX_COORDINATE: Final = 1e4
 """A pose beyond this [m] is no pose of a world of the kit."""
@@ -96,7 +97,17 @@ def encode_state(state: SharedGameState) -> Json:
     scores: Json = [round(each, 2) for each in state.scores]
     watching: Json = list(state.watching[:MAX_WATCHING])
     who: Json = [state.catcher, state.winner, list(state.names), state.asks_again, watching, state.has_left]
-    return ["state", state.phase.value, round(state.seconds, 3), poses, scores, *who, list(state.wins)]
+    catches: Json = [round(each, 2) for each in state.catches[:MAX_CATCHES]]
+    return [
+        "state",
+        state.phase.value,
+        round(state.seconds, 3),
+        poses,
+        scores,
+        *who,
+        list(state.wins),
+        catches,
+    ]
 
 
 def parse_from_guest(frame: Json) -> JoinRequest | KeyPush | RematchRequest:
@@ -128,9 +139,22 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             boolean(plays),
         )
     if kind == "state":
-        phase, seconds, poses, scores, catcher, winner, names, asks_again, watching, has_left, wins = items(
-            rest, 11
-        )
+        (
+            phase,
+            seconds,
+            poses,
+            scores,
+            catcher,
+            winner,
+            names,
+            asks_again,
+            watching,
+            has_left,
+            wins,
+            catches,
+        ) = items(rest, 12)
+        if len(items(catches)) > MAX_CATCHES:
+            raise ProtocolError(f"more than {MAX_CATCHES} catches")
         if len(items(watching)) > MAX_WATCHING:
             raise ProtocolError(f"more than {MAX_WATCHING} spectators")
         return SharedGameState(
@@ -145,6 +169,7 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             tuple(_read_name(each) for each in items(watching)),
             boolean(has_left),
             tuple(int(_read_bounded(integer(each), MAX_SECONDS)) for each in items(wins, PLAYERS)),
+            tuple(_read_bounded(each, MAX_SECONDS) for each in items(catches)),
         )
     raise ProtocolError("a frame of an unknown kind")
 

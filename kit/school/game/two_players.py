@@ -95,6 +95,8 @@ class SharedGameState:
     """Whether it is over, or waits again, because the player who has not won has left."""
     wins: tuple[int, ...] = (0,) * PLAYERS
     """Games that each has won against the other so far."""
+    catches: tuple[float, ...] = ()
+    """When somebody was caught in tag [simulated s of the game], and so caught from then on."""
 
     def next_targets(
         self, targets: Sequence[tuple[float, float]], player: int | None
@@ -152,6 +154,7 @@ class SharedReferee(Observer):
         self._since_ns = self._now_ns = 0
         self._catcher: int | None = 0 if mode is SharedMode.TAG else None
         self._caught_ns = 0
+        self._catches: list[float] = []
         self._places: list[tuple[float, float]] = []
         """Where each robot was when it had last moved on; empty where that is not known yet."""
         self._catcher_place = (0.0, 0.0)
@@ -174,16 +177,19 @@ class SharedReferee(Observer):
             tuple(self._scores),
             self._catcher,
             self._winner,
+            catches=tuple(self._catches),
         )
 
     def begin(self) -> None:
         """The game runs from the next tick on."""
+        self._catches = []
         self._enter(SharedPhase.RUNNING)
 
     def on_step(self, simulation: Simulation) -> None:
         if simulation.time_ns < self._now_ns:  # the world was reset: the phase begins again
             self._since_ns = self._caught_ns = 0
             self._places = []
+            self._catches = []
         self._now_ns = simulation.time_ns
         seconds = (self._now_ns - self._since_ns) / 1e9
         if self._phase is SharedPhase.COUNTDOWN and seconds >= COUNTDOWN:
@@ -223,6 +229,7 @@ class SharedReferee(Observer):
             and self._now_ns - max(self._caught_ns, self._since_ns) >= TAG_PAUSE * 1e9
         ):
             self._catcher, self._caught_ns, self._places = chased, self._now_ns, []
+            self._catches.append(seconds)
         if seconds >= TAG_SECONDS:
             first, second = self._scores
             self._winner = None if math.isclose(first, second, abs_tol=step) else int(second < first)

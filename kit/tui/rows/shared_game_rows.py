@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 from kit.document.blocks import Tone, ToneText, labelled_table
 from kit.document.layout import Page, rows_of
-from kit.document.rows import Row, at_both_edges, row, row_width
+from kit.document.rows import Row, StyledText, at_both_edges, row, row_width
 from kit.plain_text import counted, wrap
 from kit.school.game.two_players import (
     COUNTDOWN,
@@ -28,6 +30,8 @@ PLAYER_STYLES: Final = ("code", "bold")
 """Of the players' names: the first one's is that of the first robot."""
 LEAST_WIDTH: Final = 16
 """Columns of the players' card."""
+END_FIGURE: Final = 8
+"""Columns of a score behind its bar."""
 RULES: Final = {
     SharedMode.RACE: "First at the target wins.",
     SharedMode.TAG: f"A touch makes the other one the catcher. {TAG_RULE}",
@@ -109,6 +113,75 @@ def players_card(mode: SharedMode, state: SharedGameState, me: int | None, width
     one, other = state.poses
     rows.append(row(f"apart {math.dist(one[:2], other[:2]):.2f} m"))
     return [*rows, ruled_title(mode.value, width), *(row((line, "dim")) for line in wrap(RULES[mode], width))]
+
+
+def game_end(mode: SharedMode, state: SharedGameState, me: int | None, width: int, leaving: str) -> list[Row]:
+    """A game that is over: who has won it, the penalties of tag as bars, who caught when, and what can be done now. ``me``: as of
+    ``shared_message``; ``leaving``: what Esc does."""
+    if width < LEAST_WIDTH:  # the screen has no size yet
+        return []
+    won = " : ".join(map(str, state.wins)) + " games" if any(state.wins) else ""
+    style = "good" if state.winner == me is not None else "bold"
+    rows = [
+        ruled_title("the end", width, won),
+        *(row((line, style)) for line in wrap(_end_text(state, me), width)),
+    ]
+    names = [_name_of(state, number, me) for number in range(len(state.names))]
+    column = max(map(len, names)) + 3
+    note = "the lower one wins" if mode is SharedMode.TAG else ""
+    rows += [row(), ruled_title("penalty" if mode is SharedMode.TAG else "targets", width, note)]
+    longest, most = width - column - END_FIGURE, max(*state.scores, 1.0)
+    for number in range(len(names)):
+        score = state.scores[number]
+        figure = f"{score:.1f} s" if mode is SharedMode.TAG else f"{score:.0f}"
+        bar = "█" * max(0, round(longest * score / most))
+        rows.append(
+            row(
+                *_numbered(names, number, column),
+                (bar.ljust(max(0, longest)), PLAYER_STYLES[number]),
+                f"{figure:>{END_FIGURE}}",
+            )
+        )
+    if mode is SharedMode.TAG:
+        rows += [row(), *_catch_rows(state, names, width, column)]
+    again = _rematch_text(state, me)
+    now = [line for text in (again, leaving) if text for line in wrap(f"{text}.", width)]
+    return [*rows, row(), *(row((line, "bold")) for line in now)]
+
+
+def _numbered(names: Sequence[str], number: int, column: int) -> tuple[StyledText, ...]:
+    """A player's number and name, in a column."""
+    return (f"{number + 1} ", "dim"), (f"{names[number]:<{column - 2}}", PLAYER_STYLES[number])
+
+
+def _catch_rows(state: SharedGameState, names: Sequence[str], width: int, column: int) -> list[Row]:
+    """When each player was the catcher, as bars over the time of a game of tag."""
+    assert state.catcher is not None
+    # Each second of a game counts against one of the two.
+    turns, catcher = [0.0, *state.catches, sum(state.scores)], state.catcher
+    if len(state.catches) % 2:
+        catcher = 1 - catcher
+    columns = max(1, width - column)
+    drawn = [["·"] * columns for _ in names]
+    for start, end in pairwise(turns):
+        for at in range(round(columns * start / TAG_SECONDS), round(columns * end / TAG_SECONDS)):
+            drawn[catcher][at] = "█"
+        catcher = 1 - catcher
+    bars = [
+        row(*_numbered(names, number, column), ("".join(drawn[number]), PLAYER_STYLES[number]))
+        for number in range(len(names))
+    ]
+    told = ", ".join(f"{each:.1f}" for each in state.catches)
+    limit = f"{TAG_SECONDS:.0f} s"
+    return [
+        ruled_title("who caught", width, counted(len(state.catches), "catch", "catches")),
+        *bars,
+        row((" " * column + "0" + limit.rjust(columns - 1), "dim")),
+        *(
+            row((line, "dim"))
+            for line in wrap(f"Caught after {told} s." if told else "Nobody was caught.", width)
+        ),
+    ]
 
 
 @dataclass(slots=True)

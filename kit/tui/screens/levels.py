@@ -623,7 +623,7 @@ class LevelsScreen(RowsScreen[None]):
         from kit.tui.screens.two_players import play_together  # of no use to the first frame
 
         if self._may_drive():
-            await play_together(self.app, self._theme, self.chosen.level, self._workspace)
+            await play_together(self.app, self._theme, self.chosen.level, self._workspace, self._progress)
 
     @work(exclusive=True, group="drive")
     async def action_hand_over(self) -> None:

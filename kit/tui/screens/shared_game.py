@@ -38,11 +38,13 @@ from kit.school.game.two_players import (
 )
 from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
+from kit.tui.rows.instrument_rows import LARGE_PANEL_WIDTH
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.shared_game_rows import (
     HOST,
     RULES,
     RobotMotion,
+    game_end,
     players_card,
     shared_heading,
     shared_message,
@@ -170,6 +172,28 @@ class SharedScreen(WatchScreen):
         """Whether somebody else's game ends when this player leaves it."""
         return True
 
+    @property
+    def _is_over(self) -> bool:
+        return self.state is not None and self.state.phase is SharedPhase.OVER
+
+    @property
+    def least_panel(self) -> int:
+        """What is told of the end takes more room than a panel that goes on beside a game."""
+        return LARGE_PANEL_WIDTH if self._is_over else super().least_panel
+
+    @property
+    def _leaving(self) -> str:
+        """What Esc does after the end."""
+        return "Esc goes back"
+
+    def _told_of_players(self, width: int) -> list[Row]:
+        """The players while they play, and how it ended."""
+        if self.state is None:
+            return []
+        if self._is_over:
+            return game_end(self._mode, self.state, self.player, width, self._leaving)
+        return players_card(self._mode, self.state, self.player, width)
+
     def action_ghosts(self) -> None:
         self._with_ghosts = not self._with_ghosts
         self._show()
@@ -186,6 +210,8 @@ class SharedScreen(WatchScreen):
         told = shared_message(self._mode, state, self.player, self.join_command)
         if self._has_warned and self.not_over:
             told = GIVES_UP, *told[1:]
+        if self._is_over and self.query_one("#panel").display:
+            told = told[:1]  # the scores stand beside the picture
         self._rows("messages").show(told)
         if state.phase is not self._phase_of_keys:
             self._phase_of_keys = state.phase
@@ -278,6 +304,11 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         if game is not None:
             self.host.post(lambda session: game.rematch())
 
+    @property
+    def has_won(self) -> bool:
+        """Whether this player has won a game here."""
+        return self.state is not None and self.state.wins[HOST] > 0
+
     def save_film(self) -> Path | None:
         """Writes the recording of the last game that was over into the workspace, once the screen has been left, and returns its
         file; None where there is none. Raises OSError."""
@@ -304,7 +335,11 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         return super()._panel_rows(view)
 
     def _card(self, width: int, room: int) -> list[Row]:
-        return [] if self.state is None else players_card(self._mode, self.state, self.player, width)[:room]
+        return self._told_of_players(width)[:room]
+
+    @property
+    def _leaving(self) -> str:
+        return "Esc goes back and keeps a recording of it" if self._workspace else super()._leaving
 
     def _newest_scene(self) -> Scene:
         return self._with_targets_and_ghosts(super()._newest_scene())
@@ -401,9 +436,10 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
         if self.state is not None and self.is_active and not self.ended:
             self.world.offer(self._newest_scene)
             self._show_state()
+            self._fit_panel()
             panel = self._rows("panel")
             width, height = panel.content_size.width - 1, panel.content_size.height
-            card = players_card(self._mode, self.state, self.player, width)
+            card = self._told_of_players(width)
             figures = self._motion.rows(width) if card else []
             panel.show([*figures, *card] if len(figures) + len(card) <= height else card)
 

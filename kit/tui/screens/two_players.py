@@ -22,6 +22,7 @@ from kit.school.game.shared_sockets import (
     user_name,
 )
 from kit.school.game.two_players import CannotShare, SharedMode
+from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
@@ -35,6 +36,8 @@ HOSTED: Final = {
     for whom in ("own", "all")
 }
 """The games that can be hosted, by the key of their line."""
+BEATEN: Final = "   * beaten"
+"""Behind a program against which the player has won a game."""
 PROGRAM: Final = "program"
 """The key of the line of a game against a program."""
 WHO_MAY_JOIN: Final = {
@@ -43,7 +46,9 @@ WHO_MAY_JOIN: Final = {
 }
 
 
-async def play_together(app: App[Any], theme: Theme, level: GameLevel, workspace: Workspace) -> None:
+async def play_together(
+    app: App[Any], theme: Theme, level: GameLevel, workspace: Workspace, journal: ProgressJournal
+) -> None:
     """Has the user choose a game for two on a level, or one that others host, and plays it until it is left."""
     games = {game.name: game for game in await to_thread(answering_games, games_folder())}
     choices = [
@@ -58,26 +63,42 @@ async def play_together(app: App[Any], theme: Theme, level: GameLevel, workspace
             client = await to_thread(SharedGameClient, games[picked], own_user_name(), plays=True)
             await app.push_screen_wait(SharedGuestScreen(theme, client, workspace))
         elif picked == PROGRAM:
-            await _play_a_program(app, theme, level, workspace)
+            await _play_a_program(app, theme, level, workspace, journal)
         elif picked is not None:
             mode, audience = HOSTED[picked]
             name, folder = own_user_name(), games_folder()
             await _host(app, SharedHostScreen(theme, level, mode, name, folder, audience, workspace))
-    except (SharedGameError, CannotShare, UnknownLevel, LookupError, WorldError, OSError) as error:
+    except (
+        SharedGameError,
+        CannotShare,
+        UnknownLevel,
+        LookupError,
+        WorldError,
+        OSError,
+        ProgressError,
+    ) as error:
         app.push_screen(MessageDialog("No game for two", str(error)))
 
 
-async def _play_a_program(app: App[Any], theme: Theme, level: GameLevel, workspace: Workspace) -> None:
+async def _play_a_program(
+    app: App[Any], theme: Theme, level: GameLevel, workspace: Workspace, journal: ProgressJournal
+) -> None:
     with private_folder() as folder:
         known = {each.name: each for each in house_controllers(folder)}
         known |= {f"own {each.name}": each for each in user_controllers(workspace.controllers)}
-        choices = [PickerItem(key, each.name, each.title) for key, each in known.items()]
+        beaten = {event.subject for event in journal.events(EventKind.TAG) if event.content.get("won")}
+        choices = [
+            PickerItem(key, each.name, f"{each.title}{BEATEN if key in beaten else ''}")
+            for key, each in known.items()
+        ]
         picked = await app.push_screen_wait(Picker("Who plays tag against you?", choices))
         if picked is not None:
             screen = SharedHostScreen(
                 theme, level, SharedMode.TAG, own_user_name(), folder, Audience(), workspace, known[picked]
             )
             await _host(app, screen)
+            if screen.has_won:
+                journal.add(EventKind.TAG, picked, {"won": True, "level": level.id})
 
 
 async def _host(app: App[Any], screen: SharedHostScreen) -> None:

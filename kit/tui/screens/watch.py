@@ -385,10 +385,15 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         widths = panel_widths(*self.size, shape, wanted)
         if self.has_card and not widths.total:
             plain = plain_width(self.size.width, self.size.height - ROWS_AROUND, shape)
-            widths = replace(widths, plain=plain)
+            widths = replace(widths, plain=max(self.least_panel, plain))
         if widths != self._widths:
             self._widths = widths
             self.query_one("#panel").styles.width = widths.total + MARGIN if widths.total else widths.plain
+
+    @property
+    def least_panel(self) -> int:
+        """Columns of a panel without instruments, with its margin."""
+        return PANEL_WIDTH
 
     def _panel_rows(self, view: View) -> tuple[Row, ...]:
         mode = self.drive.mode_name if self.shows_mode else None

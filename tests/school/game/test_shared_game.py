@@ -74,7 +74,13 @@ from tests.cases import every_case
 from tests.waiting import wait_until
 
 STATE = SharedGameState(
-    SharedPhase.RUNNING, 1.5, (Pose(1.0, 2.0, 0.5), Pose(-1.0, 0.0, 3.0)), (1.0, 0.0), None, 1
+    SharedPhase.RUNNING,
+    1.5,
+    (Pose(1.0, 2.0, 0.5), Pose(-1.0, 0.0, 3.0)),
+    (1.0, 0.0),
+    None,
+    1,
+    catches=(0.5, 1.25),
 )
 
 # The rules
@@ -364,7 +370,7 @@ def test_a_host_can_say_nothing_else(frame: Json) -> None:
 
 
 def test_numbers_and_names_of_frames_go_up_to_their_limits() -> None:
-    def state(seconds: float, x: float, score: float, name: str) -> Json:
+    def state(seconds: float, x: float, score: float, name: str, catches: int = 0) -> Json:
         return [
             "state",
             "running",
@@ -378,6 +384,7 @@ def test_numbers_and_names_of_frames_go_up_to_their_limits() -> None:
             [],
             False,
             [0, 0],
+            [score] * catches,
         ]
 
     most = (MAX_SECONDS, -MAX_COORDINATE, MAX_SECONDS, "n" * MAX_PLAYER_NAME)
@@ -390,6 +397,8 @@ def test_numbers_and_names_of_frames_go_up_to_their_limits() -> None:
         beyond = [each + each[:1] if isinstance(each, str) else each * 1.001 for each in most]
         with pytest.raises(ProtocolError, match=message):
             parse_from_host(state(*most[:place], beyond[place], *most[place + 1 :]))
+    with pytest.raises(ProtocolError, match="more than 64 catches"):
+        parse_from_host(state(*most, catches=65))
     level, name = "l" * MAX_LEVEL_NAME, "n" * MAX_PLAYER_NAME
     assert parse_from_host(["offer", VERSION, level, "race", name, True]) == GameOffer(
         level, SharedMode.RACE, name, True

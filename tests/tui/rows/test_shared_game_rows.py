@@ -6,10 +6,17 @@ from dataclasses import replace
 
 import pytest
 
-from kit.document.rows import row_text
+from kit.document.rows import row_text, row_width
 from kit.geometry import Pose
 from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase
-from kit.tui.rows.shared_game_rows import HOST, RobotMotion, players_card, shared_heading, shared_message
+from kit.tui.rows.shared_game_rows import (
+    HOST,
+    RobotMotion,
+    game_end,
+    players_card,
+    shared_heading,
+    shared_message,
+)
 
 OVER = SharedGameState(
     SharedPhase.OVER, 1.0, (Pose(0.0, 0.0), Pose(1.0, 0.0)), (30.0, 60.0), 0, 0, ("Ada", "Ben")
@@ -33,6 +40,30 @@ def test_a_rematch_is_offered_and_asked_for(me: int | None, before: str, after: 
     assert after in said(replace(OVER, asks_again=True), me)
     assert ("rematch" in said(OVER, me)) == (me == 1)
     assert ("Ada has won" in said(OVER, me)) == (me != HOST), "by name"
+
+
+@pytest.mark.parametrize("width", [21, 44, 58])
+@pytest.mark.parametrize("me", [HOST, 1, None])
+def test_the_end_of_tag_tells_both_penalties_and_when_each_caught(me: int | None, width: int) -> None:
+    caught = replace(OVER, catches=(30.0, 75.0), catcher=0, scores=(45.0, 45.0), wins=(2, 1))
+    rows = game_end(SharedMode.TAG, caught, me, width, "Esc leaves")
+    assert max(map(row_width, rows)) <= width
+    told = [row_text(each) for each in rows]
+    assert sum("45.0 s" in line for line in told) == 2
+    first, second = (
+        next(line for line in told if line.startswith(f"{number} ") and "·" in line) for number in (1, 2)
+    )
+    assert all(
+        (one == "█") is (other == "·") for one, other in zip(first, second, strict=True) if one in "█·"
+    )
+    assert first.count("█") == pytest.approx(second.count("█"), abs=1)
+    assert any("30.0" in line for line in told)
+    assert any("Esc leaves" in line for line in told)
+    left = replace(caught, scores=(20.0, 5.0), catches=())
+    told = [row_text(each) for each in game_end(SharedMode.TAG, left, me, width, "")]
+    assert sum(line.count("█") for line in told if "·" in line) < width / 2, (
+        "a game that was left ends where it was"
+    )
 
 
 @pytest.mark.parametrize("me", [HOST, None])

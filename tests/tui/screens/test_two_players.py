@@ -14,6 +14,7 @@ from kit.host.node_process import NodeProcess
 from kit.run.lockstep import Observer
 from kit.run.recording import load_recording
 from kit.run.session import Session
+from kit.school.game import two_players as rules
 from kit.school.game.levels import find_level
 from kit.school.game.references import reference_recording
 from kit.school.game.shared_sockets import SharedGameError, answering_games, find_game
@@ -25,6 +26,7 @@ from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.picker import Picker
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
+from kit.tui.screens.two_players import BEATEN
 from kit.workspace import Workspace
 from tests.tui.lesson_stage import seen, stage, text, until
 from tests.tui.screens.test_shared_game import FakeClient
@@ -133,8 +135,11 @@ def test_a_game_against_a_program_that_loops_is_left_at_once(tmp_path: Path, gam
 
 
 @pytest.mark.long
-def test_tag_is_played_against_a_program_of_the_house(tmp_path: Path, games: Path) -> None:
+def test_tag_is_played_against_a_program_of_the_house_and_who_was_beaten_has_its_mark(
+    tmp_path: Path, games: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     workspace = prepare_workspace(tmp_path / "home")
+    monkeypatch.setattr(rules, "TAG_SECONDS", 3.0)
 
     async def scene(pilot: Pilot[None]) -> None:
         await choose(pilot, "against")
@@ -147,7 +152,19 @@ def test_tag_is_played_against_a_program_of_the_house(tmp_path: Path, games: Pat
         assert not answering_games(games)  # nobody joins it
         before = screen.state and screen.state.poses[1]
         await until(pilot, lambda: screen.state and screen.state.poses[1] != before, "it drives")
+        game = screen._game
+        assert game is not None
+        screen.host.post(lambda session: game._scores.__setitem__(1, 50.0))  # a game that is won
+        await until(pilot, lambda: screen.state and screen.state.phase is SharedPhase.OVER, "the end")
+        for told in ("You have won", "penalty", "who caught", "r plays again", "keeps a recording"):
+            await seen(pilot, told)
         await pilot.press("escape")  # nobody's game but one's own
-        await until(pilot, lambda: pilot.app.screen is not screen, "the list of levels")
+        await seen(pilot, "The game is saved")
+        await pilot.press("escape")
+        await choose(pilot, "against")
+        await seen(pilot, "at 0.5 m/s")
+        assert [BEATEN.strip() in line for line in text(pilot).splitlines() if "(house)" in line].count(
+            True
+        ) == 1
 
     on_the_levels(workspace, scene)
