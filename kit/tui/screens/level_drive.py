@@ -162,6 +162,7 @@ class LevelDrive(EditsFile, WatchScreen):
         self._workspace = workspace
         self._driver = driver
         self._race_program = program
+        self.shows_mode = program is None
         self.agent_name, self._policy = agent or ("", None)
         self._facts = facts
         self._referee: RaceReferee | None = None

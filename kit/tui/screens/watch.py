@@ -86,7 +86,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
     help_title: ClassVar[str] = "Keys"
     key_labels: ClassVar[Mapping[str, str]] = MappingProxyType({})
     """Words of the line at the bottom that differ from the actions', by id."""
-    shows_mode: ClassVar[bool] = True
+    shows_mode = True
     """Whether keys drive here, so that the panel says how."""
     has_instruments: ClassVar[bool] = True
     """Whether a large screen has charts, messages and the program in its panel."""
