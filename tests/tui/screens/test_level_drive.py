@@ -293,7 +293,9 @@ def test_where_no_editor_is_named_the_kits_own_opens_and_what_is_saved_drives(
             await until(pilot, lambda: isinstance(pilot.app.focused, TextArea), "the editor")
             await pilot.press("ctrl+s", leave)
             await until(
-                pilot, lambda referee=referee: drive._referee is not referee, "the drive of what was saved"
+                pilot,
+                lambda referee=referee: drive._referee not in (referee, None),
+                "the drive of what was saved",
             )
             await seen(pilot, "sends no speed")
         assert program.read_text().startswith("\n\n"), "what was typed and not saved was there again"
