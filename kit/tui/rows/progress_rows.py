@@ -62,15 +62,17 @@ def export_blocks(workspace: str) -> list[Block]:
 
 
 def calendar_rows(days: Mapping[date, int], today: date, columns: int) -> list[Row]:
-    """The last weeks, a column each, with a sign for each day that says how much was learned on it; the names of months above."""
+    """The last weeks, a column each, with a sign for each day that says how much was learned on it; the name of a month above the
+    week in which it begins."""
     label = len(WEEKDAYS[0]) + MARGIN + 1
     weeks = max(1, min(MOST_WEEKS, (columns - label - MARGIN) // 2))
     monday = today - timedelta(days=today.weekday() + 7 * (weeks - 1))
     starts = [monday + timedelta(weeks=number) for number in range(weeks)]
     months = [" "] * (2 * weeks + 2)
-    for number, start in enumerate(starts[:-1]):
-        if start.day <= 7:
-            months[2 * number : 2 * number + 3] = f"{start:%b}"
+    for number, start in enumerate(starts):
+        last = min(start + timedelta(days=6), today)
+        if last.day <= (last - start).days + 1:  # the first of its month is one of them
+            months[2 * number : 2 * number + 3] = f"{last:%b}"
     rows = [row(" " * label, ("".join(months).rstrip(), "dim"))]
     for weekday, name in enumerate(WEEKDAYS):
         parts: list[str | tuple[str, str]] = [(f"  {name:<{label - MARGIN}}", "dim")]

@@ -6,10 +6,12 @@ from asyncio import to_thread
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import date, datetime
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
+from textual.binding import BindingType
 from textual.screen import Screen
 
+from kit.dialogue.actions import ScreenActions
 from kit.document.blocks import Block, Text
 from kit.document.rows import Row, row
 from kit.school.badges import Badge, Streak, badge_table, badges, learning_days, streak
@@ -18,6 +20,7 @@ from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.reading import read_units
 from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import read_bank
+from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.progress_rows import (
     calendar_rows,
     export_blocks,
@@ -28,7 +31,8 @@ from kit.tui.rows.progress_rows import (
     section_of,
     short_lesson_rows,
 )
-from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
+from kit.tui.screens.lessons import MARKS
 from kit.tui.screens.text_screen import LEAST_COLUMN, SectionsScreen
 from kit.tui.student_store import StudentStore
 from kit.world.problems import WorldError
@@ -62,6 +66,9 @@ class ProgressSummary:
 class ProgressScreen(SectionsScreen):
     """Shows all that was done; the lessons beside the rest where there is room, each in one row."""
 
+    screen_actions = ScreenActions("progress", ("scroll", "help", "back"), ("close",))
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
+
     def __init__(self, summary: ProgressSummary) -> None:
         super().__init__("Progress", self._told, fewest=2)
         self._summary = summary
@@ -87,6 +94,9 @@ class ProgressScreen(SectionsScreen):
             counts,
             lesson_rows(told.shelf) if is_alone else short_lesson_rows(told.shelf, columns),
         ]
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("Progress", self.screen_actions, MARKS))
 
 
 async def show_progress(screen: Screen[Any], store: StudentStore) -> None:

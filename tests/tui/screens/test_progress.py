@@ -93,3 +93,23 @@ def test_the_calendar_ends_today_and_shows_how_busy_each_day_was() -> None:
     assert sum(line.count(sign) for line in (monday, *others) for _, sign in BUSY) == 2
     assert light in legend
     assert max(map(len, (months, monday, *others))) <= 60
+
+
+@pytest.mark.parametrize(
+    ("today", "is_named"), [(MONDAY, False), (MONDAY + timedelta(days=1), True)], ids=str
+)
+def test_a_month_is_named_above_the_week_in_which_it_begins(today: date, is_named: bool) -> None:
+    """The first of December is a Tuesday."""
+    months, monday, *_ = map(row_text, calendar_rows({MONDAY: BUSY[-1][0]}, today, 60))
+    this_week = monday.index(BUSY[-1][1])
+    assert (months.find("Dec") == this_week) is is_named
+    assert months.index("Nov") < this_week
+
+
+def test_progress_has_a_help_page() -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "? help")
+        await pilot.press("question_mark")
+        await seen(pilot, "done, begun, not begun")
+
+    stage(lambda theme: ProgressScreen(ProgressSummary((), "home", MONDAY)), scene, size=(80, 24))
