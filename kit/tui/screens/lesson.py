@@ -286,8 +286,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         return scene is not None
 
     def _panels(self) -> list[Panel]:
-        """What a large screen has besides: the lesson's steps, what the check of this one looks at, until it has, and the words
-        that the lesson introduces."""
+        """What a large screen has besides: the lesson's steps, what the check of this one looks at, until it has where there is
+        little room, and the words that the lesson introduces."""
         if self._is_editing or PageLayout.of(*self.room, is_wide=True) is not PageLayout.ROOMY:
             return []
         progress = self.dialogue.session.lesson_progress
@@ -298,8 +298,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
         ):  # where not all may have room, it begins shortly before that
             first = max(0, min(here.number - 2, len(lesson.steps) - LEAST_STEPS))
         panels = [Panel("steps", (lesson_rows.steps_table(progress, here, first),))]
-        work = self.dialogue.work
-        if work is not None and work.report is None and not work.by_hand and work.criteria:
+        work, columns = self.dialogue.work, self._file_columns
+        is_kept = columns is not None and columns.aside > 0  # so that nothing below it moves
+        if work is not None and work.criteria and not work.by_hand and (work.report is None or is_kept):
             rows = [(title, ToneText(f"{points:g}", Tone.DIM)) for title, points in work.criteria]
             panels.append(Panel("what is checked, and its points", (labelled_table(rows, is_tight=True),)))
         with suppress(WorldError, FileNotFoundError):  # it is told where the glossary is opened

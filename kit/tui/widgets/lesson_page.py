@@ -48,7 +48,7 @@ LEAST_BEYOND: Final = 46
 MOST_MAP: Final = 20
 """Rows of a scene below the words."""
 ROWS_FOR_VERDICT: Final = 12
-"""Rows that are left free for a verdict, where the scene has its least ones all the same."""
+"""Rows that are left free for a verdict, where what stands below has its least ones all the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,20 +263,26 @@ class LessonPage(Container):
             self._set_size(content.moves, height="1fr")
             self._place_stage((columns.words if x else columns.file) - MARGIN, rows, (x, room - rows))
         code = room if x or not rows else room - rows - 1
-        has_aids_here = not rows and left > LEAST_FILE
         self._set_size(self._rows("work"), columns.file, code)
         self._set_size(self.query_one("#told"), columns.words + columns.aside, "1fr")
         self._set_size(self.query_one("#right"), columns.words, room - rows - 1 if x else "1fr")
         self._room = max(1, (room - rows - 1 if x else room) - len(content.asked))
-        kept = max(content.most_words, len(content.words))
-        self._set_size(self._rows("words"), height=min(kept, self._room) if content.asked else "1fr")
         self._show_words()
+        # Where they are whole, or else where they are less cut.
+        whole = len(panel_rows(content.aids, min(columns.file - MARGIN, TEXT_WIDTH), room)) < left
+        has_aids_here = not rows and (whole or below_words < left > LEAST_FILE)
         aids = () if has_aids_here else content.aids
-        panels = (*aids, *(() if columns.aside else content.panels))
-        if not columns.aside:
-            panels = (*content.panels[:1], *aids, *content.panels[1:])
-        self._content = replace(content, panels=panels)
-        self._show_below(self._room - kept)
+        panels = () if columns.aside else content.panels
+        self._content = replace(content, panels=(*panels[:1], *aids, *panels[1:]))
+        # A verdict has its place between the words and the panels, which do not move then; where that would cut them they stand at
+        # the bottom, as far as the verdict leaves room.
+        kept = max(content.most_words, len(content.words))
+        reserved = max(kept, content.step_rows + self._offset + ROWS_FOR_VERDICT)
+        is_cut = self._panel_rows(room) != self._panel_rows(self._room - reserved)
+        used = kept if is_cut else reserved
+        height = min(used, self._room) if content.asked or not is_cut else "1fr"
+        self._set_size(self._rows("words"), height=height)
+        self._show_below(self._room - used)
         beside = panel_rows(content.panels, columns.aside - MARGIN, room) if columns.aside else []
         self.set_class(bool(beside), "-aside")
         self._rows("aside").show(beside)
@@ -296,11 +302,17 @@ class LessonPage(Container):
     def _show_below(self, room: int) -> None:
         """Panels below the words and what is asked, at the bottom of the page. ``room``: rows that are kept free of words."""
         content = self._content
-        rows = panel_rows(content.panels, content.words_width - 2 * MARGIN, room - 1, upwards=True)
+        rows = self._panel_rows(room)
         self.set_class(bool(rows), "-panels")
         if rows:
             blank = [row()] * (room - len(rows) if content.asked else 0)
             self._rows("below").show_all([*blank, *(row(" " * MARGIN, *each) for each in rows)])
+
+    def _panel_rows(self, room: int) -> list[Row]:
+        """The panels below the words. ``room``: rows, with an empty one above them."""
+        return panel_rows(
+            self._content.panels, self._content.words_width - 2 * MARGIN, room - 1, upwards=True
+        )
 
     @staticmethod
     def _file_rows(line: Sequence[Row], columns: int) -> list[Row]:

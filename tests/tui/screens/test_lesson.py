@@ -526,8 +526,12 @@ def test_a_large_terminal_shows_the_world_below_a_short_file_and_then_what_the_p
         robot = next(number for number, line in enumerate(shown) if any(each in line for each in ROBOT))
         assert robot > next(number for number, line in enumerate(shown) if line.startswith(" 1 "))
         assert "r restart" not in shown[-1]
+        titles = [(number, line.index("── ")) for number, line in enumerate(shown) if "── " in line]
+        assert len(titles) >= 2
         await pilot.press("c")
         await seen(pilot, "[no] It reaches the target")
+        shown = rows(pilot)
+        assert titles == [(number, line.index("── ")) for number, line in enumerate(shown) if "── " in line]
         await seen(pilot, "your run: r shows it again")
         assert "[no] It reaches the target" in text(pilot)
 
