@@ -106,7 +106,7 @@ VISITS: Final = {
     "challenges": ScreenVisit(("game",), ("\x1b[D",), 3.0),
     "puzzle": ScreenVisit(("game",), ("\x1b[D", "\r", "\x1b[C" * 7 + "\x1b[B\x1b[A" * 6, "c"), 3.0),
     "puzzle-lasers": ScreenVisit(("game",), ("\x1b[D", *["\x1b[B"] * 8, "\r", "\x1b[C\x1b[C\x1b[B "), 3.0),
-    "puzzle-layers": ScreenVisit(("game",), ("\x1b[D", *["\x1b[B"] * 2, "\r", "  \x1b[B "), 3.0),
+    "puzzle-layers": ScreenVisit(("game",), ("\x1b[D", *["\x1b[B"] * 3, "\r", "  \x1b[B "), 3.0),
     "nodes": ScreenVisit(("drive", "maze", "--controller", "random_walk"), ("n",), 4.0),
     "message-plot": ScreenVisit(("drive", "maze", "--controller", "random_walk"), ("n", "y", "\x1b[B"), 6.0),
     "layers": ScreenVisit(keys=("6", "m", "slides-lasers\r", "3")),

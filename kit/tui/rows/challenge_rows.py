@@ -287,13 +287,14 @@ def puzzle_beside(view: PuzzleView, width: int, height: int) -> list[Row]:
         cells, told = _table_and_rest(board.rows())
         table = [*cells, *(each for shown in told for each in _wrap_row(shown, room))]
     tries = tries_rows(view.checks, room)
-    if count > 1:
-        judgement = view.judgement
-        rungs = [] if isinstance(judgement, str) else _rungs_rows(judgement.comparison)[1:]
-        below: list[Sequence[Row]] = [table, rungs, *view.beside, tries]
-    else:
-        below = [table, *view.details(room, tries)]
+    judgement = view.judgement
+    rungs = [] if isinstance(judgement, str) else _rungs_rows(judgement.comparison)[1:]
+    below: list[Sequence[Row]] = [table, rungs, *view.beside, tries]
+    if count == 1:
+        below = [table, *view.details(room, tries), rungs]
     text += _stacked(below, room, height - len(text))
+    if count == 1 and not lesson:
+        text += lesson_below(view.challenge, room, height - len(text))
     shown = side_by_side([row(), *left], text, column)
     if count == 1:
         return shown

@@ -22,7 +22,7 @@ STYLES: Final = {
     PLAIN: Style(),
     "dim": Style(dim=True),
     "bold": Style(bold=True),
-    "key": Style(reverse=True),
+    "key": Style(color="cyan", reverse=True),
     "title": Style(color="cyan", bold=True),
     "press": Style(color="cyan", bold=True),
     "chosen": Style(color="cyan", reverse=True, bold=True),

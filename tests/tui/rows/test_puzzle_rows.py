@@ -210,7 +210,8 @@ def test_a_curve_and_figures_tell_what_the_moves_gained_where_there_is_room() ->
     assert len(figures) == 3
     assert figures[0] < figures[2]
     assert title in told()
-    paid, visits, moves = board.details(60)
+    paid, visits, moves, each_move = map(list, board.details(60))
+    assert row_text(each_move[2]).split()[-1] == f"{figures[-1]:.2f}", "the newest move stands first"
     assert [each.count("2") for each in map(row_text, visits) if "2" in each] == [1], "entered twice"
     assert all(row_text(each[0]) in told() for each in (paid, visits, moves))
 
