@@ -3,9 +3,9 @@
     python -m tests.school.game.measured_drivers              # the table of what has been measured
     python -m tests.school.game.measured_drivers --measure    # drives what is missing in it, a line as soon as it is known
 
-``keys`` presses the keys of a hand with ordinary skill, ``laser`` is a tidy program without a map, ``map`` one that follows
-points read off the map, ``agent`` is trained for the level by the kit's preset, and ``tape`` turns to the level's own heading and
-plays the commands of the reference drive back. The drives stand in
+``keys`` presses the keys of a hand with ordinary skill, and the best of its five tries counts; ``laser`` is a tidy program
+without a map, ``map`` one that follows points read off the map, ``agent`` is trained for the level by the kit's preset, and
+``tape`` turns to the level's own heading and plays the commands of the reference drive back. The drives stand in
 ``measured_drivers.csv``; the medals are not in it, but derived from the bars as they are now.
 """
 
@@ -33,6 +33,7 @@ from kit.school.game.race import (
     DriverKind,
     RaceFinish,
     agent_controller,
+    finish_order,
     middle_drive,
     race_controller,
     run_race,
@@ -42,7 +43,7 @@ from kit.school.game.starts import OWN_SEED, draw_seeds, scenario_from
 from kit.sim.simulation import STEP_SIZE_S
 from tests.school.game.level_agents import train_agent
 from tests.school.game.map_plans import write_program
-from tests.school.game.ordinary import OrdinaryDriver
+from tests.school.game.ordinary import REACTION_TICKS, KeyPresser
 
 LASER_PROGRAM: Final = house.PROGRAM
 MEASURED: Final = Path(__file__).with_name("measured_drivers.csv")
@@ -53,6 +54,8 @@ DRIVERS: Final = {
     "agent": DriverKind.AGENT,
     "tape": DriverKind.CONTROLLER,
 }
+TRIES: Final = (16, 18, 20, 22, 24)
+"""A hand drives so often, and is not equally quick each time: its delay, in ticks."""
 LONGEST: Final = 3.0
 """So many times as long as the reference drive a measured drive may take: later, it has not arrived."""
 
@@ -89,11 +92,18 @@ def drive(level: GameLevel, seed: int, install: Install) -> Drive:
     return run_race(level, scenario_from(level, seed), install, seed=seed)
 
 
-def keys_drive(level: GameLevel, seed: int = OWN_SEED) -> Drive:
-    """The ordinary hand's drive."""
+def keys_drive(level: GameLevel, reaction_ticks: int = REACTION_TICKS) -> Drive:
+    """The ordinary hand's drive, through the kit's teleop."""
     return drive(
-        level, seed, lambda session: session.runner.participants.append(OrdinaryDriver(session, level))
+        level,
+        OWN_SEED,
+        lambda session: session.runner.participants.append(KeyPresser(session, level, reaction_ticks)),
     )
+
+
+def best_keys_drive(level: GameLevel) -> Drive:
+    """The best of the ordinary hand's tries, which is what counts for a hand."""
+    return min((keys_drive(level, ticks) for ticks in TRIES), key=lambda tried: finish_order(tried[0]))
 
 
 def tape_drive(level: GameLevel, seed: int) -> Drive:
@@ -132,7 +142,7 @@ def measure(level: GameLevel, driver: str) -> MeasuredDrive:
 
 
 def _measure(level: GameLevel, driver: str, is_second: bool = False) -> MeasuredDrive:
-    """Drives a level: a hand once, the others from the starts, until it is known which drive is the middle one or that most do
+    """Drives a level: a hand from the level's own start, the others from the starts, until it is known which drive is the middle one or that most do
     not arrive."""
     with TemporaryDirectory() as folder, _driver(level, driver, Path(folder), is_second) as drive_from:
         if isinstance(drive_from, str):
@@ -159,7 +169,7 @@ def _driver(
 ) -> Iterator[Callable[[GameLevel, int], Drive] | str]:
     """What drives a level from the start of a seed; or why nothing can."""
     if name == "keys":
-        yield keys_drive
+        yield lambda each, seed: best_keys_drive(each)
     elif name == "tape":
         yield tape_drive
     elif name in ("laser", "map"):

@@ -14,12 +14,14 @@ from typing import Final
 
 import numpy as np
 
+from kit.controllers import find_controller
 from kit.geometry import Pose, wrap_angle
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.run.scenario import BEACON
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import DOCK_TIME
+from kit.sim.plugins.tricycle_drive import TricycleDriveParams
 from kit.sim.simulation import Simulation
 from tests.school.game.map_plans import LANES
 from tests.school.game.tidy import (
@@ -34,7 +36,7 @@ from tests.school.game.tidy import (
 )
 
 REACTION_TICKS: Final = 20
-"""From what is seen to the key that is pressed: 0.2 s, as of people who expect something."""
+"""From what is seen to the key that is pressed: 0.2 s, as of people who expect something; by default."""
 KEY_TICKS: Final = 10
 """Keys change no faster than a terminal repeats them: every 0.1 s."""
 AT_DOCK: Final = 0.25
@@ -49,6 +51,10 @@ CART_DISTANCE, WALL_DISTANCE = 0.32, 0.16
 """What it keeps from the middle of a cart, and from walls when it gets out of a cart's way [m]."""
 GOING_S, STANDING_S = 1.6, 0.4
 """For so long it looks ahead: going, and then standing where it has come to [s]."""
+STEERED_CLEARANCE, STEERED_TOLERANCE = 0.36, 0.1
+"""What it keeps from walls [m], and within which heading error it steers straight on [rad], where it cannot turn on the spot."""
+JUMP: Final = 0.2
+"""Nobody drives so far in one tick [m]."""
 STUCK_TICKS, BACKING_TICKS = 60, 80
 """Who has pressed forward for so long and has not moved backs off for so long."""
 
@@ -67,10 +73,10 @@ def targets_of(level: GameLevel) -> list[tuple[float, float]]:
 class OrdinaryDriver(TidyDriver):
     """Drives a level with the delays of a hand: what is seen is acted on a fifth of a second later."""
 
-    def __init__(self, session: Session, level: GameLevel) -> None:
+    def __init__(self, session: Session, level: GameLevel, reaction_ticks: int = REACTION_TICKS) -> None:
         super().__init__(session, targets_of(level))
         self._level = level
-        self._seen: deque[Pose] = deque(maxlen=REACTION_TICKS)
+        self._seen: deque[Pose] = deque(maxlen=reaction_ticks)
         self._carts = [
             each.name
             for each in session.scenario.world.models
@@ -79,6 +85,9 @@ class OrdinaryDriver(TidyDriver):
         self._cart_ways = self._watched_carts() if self._carts else np.empty((0, 0, 2))
         self._tick = 0
         self._held = (0.0, 0.0)
+        self._is_steered = any(
+            isinstance(plugin.params, TricycleDriveParams) for plugin in session.scenario.driven.plugins
+        )
         self._stuck = self._backing = 0
         self._charge = level.conditions.charge
         self._has_docked = False
@@ -104,7 +113,7 @@ class OrdinaryDriver(TidyDriver):
             return self._follow(pose)
         if conditions.docks and self._is_docking(pose):
             return 0.0, 0.0
-        keys = super().keys(pose)
+        keys = self._steer(pose) if self._is_steered else super().keys(pose)
         if conditions.acceleration:
             keys = self._on_ice(pose, conditions.acceleration)
         return self._among_carts(pose, keys) if self._carts else keys
@@ -116,6 +125,15 @@ class OrdinaryDriver(TidyDriver):
         speed = SPEED if distance > BEHIND_LEADER[1] else -SPEED if distance < BEHIND_LEADER[0] else 0.0
         turn = 0.0 if abs(error) < 0.1 else math.copysign(TURN_RATE, error)
         return (speed if abs(error) < TURN_IN_PLACE_ANGLE else 0.0), turn
+
+    def _steer(self, pose: Pose) -> tuple[float, float]:
+        """The keys for a robot that cannot turn on the spot: always forward, far from walls, in short turns."""
+        self._field = self._field or compute_distance_field.__wrapped__(
+            self._walls, self._targets[0], STEERED_CLEARANCE, WALL_PRICE
+        )
+        x, y = self._aim_point(self._field, *pose[:2])
+        error = wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.theta)
+        return SPEED, 0.0 if abs(error) < STEERED_TOLERANCE else math.copysign(TURN_RATE, error)
 
     def _is_docking(self, pose: Pose) -> bool:
         """Makes the dock the next target where the charge would not last; whether it stands there to be charged."""
@@ -282,3 +300,29 @@ class OrdinaryDriver(TidyDriver):
         to_point = np.array([x, y]) - walls[:, :2]
         share = np.clip((to_point * ways).sum(1) / np.maximum((ways**2).sum(1), 1e-12), 0.0, 1.0)
         return float(np.hypot(*(to_point - share[:, None] * ways).T).min())
+
+
+class KeyPresser(OrdinaryDriver):
+    """Presses these keys, and releases them: the kit's own teleop drives, as in a level that somebody plays."""
+
+    def __init__(self, session: Session, level: GameLevel, reaction_ticks: int = REACTION_TICKS) -> None:
+        super().__init__(session, level, reaction_ticks)
+        self._down: set[str] = set()
+        teleop = "teleop_pair" if len(self._models) > 1 else "teleop"
+        session.drive_with(find_controller(teleop))
+        session.wait_until_driven()
+
+    def exchange(self) -> bool:
+        speed, turn = self.keys(self._pose())
+        pushes = {"up": speed > 0.0, "down": speed < 0.0, "left": turn > 0.0, "right": turn < 0.0}
+        down = {key for key, is_pushed in pushes.items() if is_pushed}
+        if self._is_sent_back():  # and the keys that are down count no more
+            self._down = set()
+        released, pressed = sorted(self._down - down), sorted(down - self._down)
+        self._session.keys.publish([*(f"r_{key}" for key in released), *(f"p_{key}" for key in pressed)])
+        self._down = down
+        return False
+
+    def _is_sent_back(self) -> bool:
+        """Whether teleop has just put the robot back to its start."""
+        return len(self._seen) > 1 and math.dist(self._seen[-1][:2], self._seen[-2][:2]) > JUMP

