@@ -148,7 +148,7 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
         click.echo(f"{chosen.title}. {chosen.story} {chosen.hint}")
         is_practice = begin_run(journal, chosen)
         drive = _drive_line_by_line(chosen, opened_workspace)
-        _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, [drive], is_practice=is_practice)
+        _record_drive(journal, opened_workspace, chosen, DriverKind.HAND, [drive], is_practice=is_practice)
 
 
 command.taker = play
@@ -186,7 +186,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         try:
             if controller is not None:
                 driver, program = (
-                    DriverKind.CONTROLLER,
+                    DriverKind.PROGRAM,
                     find_controller(controller, opened_workspace.controllers),
                 )
                 facts = facts_of_program(program.file)
@@ -295,7 +295,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
 @click.argument("level")
 @click.option(
     "--driver",
-    type=click.Choice(["keys", "controller", "agent", "reference"]),
+    type=click.Choice(["hand", "program", "agent", "reference"]),
     help="Drive to show (default: your fastest, or the reference if you have none).",
 )
 @click.pass_obj

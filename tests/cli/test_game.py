@@ -22,7 +22,7 @@ def test_a_replay_without_a_full_screen_says_whose_drive_it_is_and_how_long(tmp_
     assert found.exit_code == 0
     assert "reference" in found.output
     assert " s." in found.output
-    missing = result_of(tmp_path, "replay", "first-drive", "--driver", "keys")
+    missing = result_of(tmp_path, "replay", "first-drive", "--driver", "hand")
     assert missing.exit_code == 2
     assert "no drive" in missing.output
 

@@ -232,6 +232,6 @@ def test_a_level_that_is_not_open_is_refused_with_what_opens_it(tmp_path: Path) 
         assert f"{level.title} opens after First drive or lesson {level.lesson_number}" in refused.stderr
     with ProgressJournal(tmp_path) as journal:
         assert not journal.events(EventKind.FINISH)
-        content = {"reached": True, "seconds": 5.0, "bumps": 0, "driver": "keys", "medal": 1}
+        content = {"reached": True, "seconds": 5.0, "bumps": 0, "driver": "hand", "medal": 1}
         journal.add(EventKind.FINISH, "first-drive", content)
     assert game("play", level.id, "--plain").exit_code == 0

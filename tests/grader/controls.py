@@ -190,7 +190,7 @@ CONTROLS: Final = (
     Control(
         "a program's drive in a file of drives by hand",
         "kit/school/game/leaderboard.py",
-        "                    else other.driver is not each.driver is DriverKind.KEYS\n",
+        "                    else other.driver is not each.driver is DriverKind.HAND\n",
         "                    else False\n",
         "school/game/test_leaderboard.py::test_a_drive_of_a_program_is_none_by_hand",
     ),

@@ -158,8 +158,8 @@ def test_a_link_that_is_dropped_in_the_middle_of_a_level_keeps_the_drives_before
     workspace = prepare_workspace(tmp_path)
     finish, recording = drive_reference(level)
     with ProgressJournal(workspace.folder) as journal:
-        record_drive(journal, workspace, level, DriverKind.KEYS, [(finish, recording)], BY_HAND)
-    kept = ghost_file(workspace, level, DriverKind.KEYS).read_bytes()
+        record_drive(journal, workspace, level, DriverKind.HAND, [(finish, recording)], BY_HAND)
+    kept = ghost_file(workspace, level, DriverKind.HAND).read_bytes()
     user = connect(1e6, 0.005, "game", "play", "first-drive")
     user.until(lambda: "The clock starts" in user.text, "the start")
     user.send(b"w" * 5)
@@ -169,4 +169,4 @@ def test_a_link_that_is_dropped_in_the_middle_of_a_level_keeps_the_drives_before
     with ProgressJournal(workspace.folder) as journal:
         assert journal.notice == "", "it was closed well"
         assert [event.subject for event in journal.events(EventKind.FINISH)] == [level.id]
-    assert ghost_file(workspace, level, DriverKind.KEYS).read_bytes() == kept
+    assert ghost_file(workspace, level, DriverKind.HAND).read_bytes() == kept

@@ -374,7 +374,7 @@ def _without_copies(
                 and (
                     (other.since_ns, other.user) < (own_since, each.user)
                     if other.user != each.user
-                    else other.driver is not each.driver is DriverKind.KEYS
+                    else other.driver is not each.driver is DriverKind.HAND
                 )
                 and is_same_way(each.way, other.way)
             ),
@@ -382,7 +382,7 @@ def _without_copies(
         )
         if first is None:
             kept.append(each)
-        elif each.driver is not DriverKind.KEYS:
+        elif each.driver is not DriverKind.HAND:
             kept.append(replace(each, copy_of=first.name))
     return kept
 

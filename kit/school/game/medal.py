@@ -37,15 +37,15 @@ _TOP: Final = {Medal.MASTER: 1.02, Medal.RECORD: 1.0}
 _PROGRAM: Final = {Medal.BRONZE: 2.25, Medal.SILVER: 1.40, Medal.GOLD: 1.06, **_TOP}
 SHARES: Final[Mapping[DriverKind, Mapping[Medal, float]]] = MappingProxyType(
     {
-        DriverKind.KEYS: {Medal.BRONZE: 2.0, Medal.SILVER: 1.3, Medal.GOLD: 1.1, **_TOP},
-        DriverKind.CONTROLLER: _PROGRAM,
+        DriverKind.HAND: {Medal.BRONZE: 2.0, Medal.SILVER: 1.3, Medal.GOLD: 1.1, **_TOP},
+        DriverKind.PROGRAM: _PROGRAM,
         DriverKind.AGENT: _PROGRAM,
     }
 )
 """How many times the reference drive's time each driver may take for a medal; for the record, less than that."""
 
 
-def medal_of(finish: RaceFinish, reference_s: float | None, driver: DriverKind = DriverKind.KEYS) -> Medal:
+def medal_of(finish: RaceFinish, reference_s: float | None, driver: DriverKind = DriverKind.HAND) -> Medal:
     """The medal of a finish. ``reference_s``: the reference drive's time [s]; None: there are no medals. A
     flawed one gets bronze at best."""
     if not finish.reached or reference_s is None:
@@ -55,7 +55,7 @@ def medal_of(finish: RaceFinish, reference_s: float | None, driver: DriverKind =
     return min(best, Medal.BRONZE) if finish.is_flawed else best
 
 
-def medal_time(medal: Medal, reference_s: float, driver: DriverKind = DriverKind.KEYS) -> float:
+def medal_time(medal: Medal, reference_s: float, driver: DriverKind = DriverKind.HAND) -> float:
     """The longest time that earns a medal [s], in whole hundredths as it is shown: a tick takes one."""
     hundredths = math.floor(round(100.0 * SHARES[driver][medal] * reference_s, 6))
     return (hundredths - (medal is Medal.RECORD)) / 100.0

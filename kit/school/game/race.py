@@ -116,19 +116,14 @@ ALLOWED_SERVICES: Final = ("move_model", "pause", "resume", "toggle_pause", "cha
 class DriverKind(StrEnum):
     """The kind of driver."""
 
-    KEYS = "keys"
-    CONTROLLER = "controller"
+    HAND = "hand"
+    PROGRAM = "program"
     AGENT = "agent"
-
-    @property
-    def noun(self) -> str:
-        """What drives, in a word."""
-        return {"keys": "hand", "controller": "program"}.get(self.value, self.value)
 
     @property
     def phrase(self) -> str:
         """How a drive by it was made, in words."""
-        return f"by {self.noun}"
+        return f"by {self.value}"
 
 
 @dataclass(frozen=True, slots=True)

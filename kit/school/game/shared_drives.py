@@ -149,7 +149,7 @@ def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> Ju
     robots = scenario_from(level, again.seed).partners
     tracks = tuple(again.track(name)[::TRACK_STRIDE] for name in robots)
     way = _way_of(level, next(each for _, each in drives if each.seed == OWN_SEED))
-    if driver is DriverKind.KEYS and _is_reference(level, way):
+    if driver is DriverKind.HAND and _is_reference(level, way):
         raise DriveRefused("it is the reference drive")
     return JudgedDrive(
         finish,
@@ -168,9 +168,9 @@ def drives_again(
     """Runs the drives of a level again: one of a hand, from the level's own start, of others one from each start. Raises
     DriveRefused."""
     seeds = sorted(each.seed for each in shared.recordings)
-    if driver is DriverKind.KEYS and seeds != [OWN_SEED]:
+    if driver is DriverKind.HAND and seeds != [OWN_SEED]:
         raise DriveRefused("it is not one drive from the level's own start")
-    if driver is not DriverKind.KEYS and not are_drawn(level, seeds):
+    if driver is not DriverKind.HAND and not are_drawn(level, seeds):
         raise DriveRefused(f"it has not one drive from each of {STARTS} starts")
     drives = []
     for number, recording in enumerate(shared.recordings):

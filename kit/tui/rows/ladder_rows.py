@@ -29,9 +29,9 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
     """All rungs of a driver's ladder, as far apart as the logarithms of their times, and where a time stands among them.
 
     >>> from kit.document.rows import row_text
-    >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 15.0, 30))
+    >>> row_text(ladder_bar(DriverKind.HAND, 10.0, 15.0, 30))
     'B━━━━━━━━━━━●─────S──────G──MR'
-    >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 10.21, 30))
+    >>> row_text(ladder_bar(DriverKind.HAND, 10.0, 10.21, 30))
     'B━━━━━━━━━━━━━━━━━S━━━━━━G━●MR'
     """
     shares = SHARES[driver]
@@ -94,7 +94,7 @@ def in_reach_row(driver: DriverKind, reference: float, seconds: float, is_flawed
     """The best medal that a drive still earns, and until when.
 
     >>> from kit.document.rows import row_text
-    >>> row_text(in_reach_row(DriverKind.KEYS, 10.0, 11.5, False))
+    >>> row_text(in_reach_row(DriverKind.HAND, 10.0, 11.5, False))
     'silver until 13.00 s'
     """
     medal = rung_in_reach(driver, reference, seconds, is_flawed)

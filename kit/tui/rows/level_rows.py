@@ -137,7 +137,7 @@ def about(progress: LevelProgress, reference: float | None, width: int, room: in
             driver = min(drivers, key=lambda each: best.get(each, math.inf))
             standing.append(
                 row(
-                    (f"{', '.join(each.noun for each in drivers):<{LADDER_LABEL}}", "dim"),
+                    (f"{', '.join(each.value for each in drivers):<{LADDER_LABEL}}", "dim"),
                     *ladder_bar(driver, reference, best.get(driver), bar),
                     ladder_words(driver, reference, best.get(driver)),
                 )

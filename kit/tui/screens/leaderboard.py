@@ -138,7 +138,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         ]
         reach = [ruled_title("your nearest medals", columns), *nearest] if nearest else []
         room = self.size.height - ROWS_AROUND - len(rows) - len(reach) - 1
-        card = level_card(level, DriverKind.KEYS, reference_seconds(level), (), columns, room, Company())
+        card = level_card(level, DriverKind.HAND, reference_seconds(level), (), columns, room, Company())
         asked = [each for part in card.values() for each in part]
         return [*rows, *asked, *([row()] if asked and reach else []), *reach]
 

@@ -141,7 +141,7 @@ class LevelDrive(EditsFile, WatchScreen):
         journal: ProgressJournal,
         workspace: Workspace,
         *,
-        driver: DriverKind = DriverKind.KEYS,
+        driver: DriverKind = DriverKind.HAND,
         program: ControllerFile | None = None,
         facts: DriverFacts = BY_HAND,
         agent: tuple[str, Policy] | None = None,
@@ -214,7 +214,7 @@ class LevelDrive(EditsFile, WatchScreen):
     @property
     def _own_program(self) -> Path | None:
         """The player's own program, where one drives."""
-        is_own = self._driver is DriverKind.CONTROLLER and not self._facts.is_shipped
+        is_own = self._driver is DriverKind.PROGRAM and not self._facts.is_shipped
         return self._race_program.file if self._race_program is not None and is_own else None
 
     def open_world(self) -> None:
@@ -240,7 +240,7 @@ class LevelDrive(EditsFile, WatchScreen):
     def _open_race(self) -> Session:
         """Opens the race in the helper thread, after the program has started and before the first tick."""
         assert self._race_program is not None  # else the keys drive
-        if self._driver is DriverKind.CONTROLLER:
+        if self._driver is DriverKind.PROGRAM:
             self._facts = facts_of_program(
                 self._race_program.file
             )  # it may have been edited since the last drive
@@ -326,7 +326,7 @@ class LevelDrive(EditsFile, WatchScreen):
     @property
     def shows_program(self) -> bool:
         """One that drives the level; nobody reads the code that turns keys into speeds."""
-        return self._driver is DriverKind.CONTROLLER
+        return self._driver is DriverKind.PROGRAM
 
     @property
     def help_notes(self) -> tuple[tuple[tuple[str, str], ...], ...]:

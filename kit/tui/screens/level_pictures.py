@@ -36,8 +36,8 @@ WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
 GHOST_LOOKS: Final = {
     REFERENCE: ("P", Role.GHOST_REFERENCE),
-    DriverKind.KEYS.value: ("K", Role.GHOST_KEYS),
-    DriverKind.CONTROLLER.value: ("C", Role.GHOST_PROGRAM),
+    DriverKind.HAND.value: ("K", Role.GHOST_KEYS),
+    DriverKind.PROGRAM.value: ("C", Role.GHOST_PROGRAM),
     DriverKind.AGENT.value: ("A", Role.GHOST_AGENT),
 }
 """The letter and the role of each ghost: the reference sets the pace, R is a record; a classmate has the first letter of the

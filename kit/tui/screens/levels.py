@@ -362,7 +362,7 @@ class LevelsScreen(RowsScreen[None]):
             if reference is not None
         ]
         parts = level_card(
-            level, DriverKind.KEYS, reference, self.chosen.rules, width, self.size.height, company
+            level, DriverKind.HAND, reference, self.chosen.rules, width, self.size.height, company
         )
         rows: list[Row] = []
         for part in (*ladders, *(parts[name] for name in CARD_PARTS if name in parts)):
@@ -638,7 +638,7 @@ class LevelsScreen(RowsScreen[None]):
             Picker(f"Who drives? Yours are in {shell_path(self._workspace.controllers)}", choices)
         )
         if picked is not None:
-            await self._drive(self.chosen.level, DriverKind.CONTROLLER, files[picked])
+            await self._drive(self.chosen.level, DriverKind.PROGRAM, files[picked])
 
     @work(exclusive=True, group="drive")
     async def action_agent(self) -> None:
@@ -674,7 +674,7 @@ class LevelsScreen(RowsScreen[None]):
     async def _drive(
         self,
         level: GameLevel,
-        driver: DriverKind = DriverKind.KEYS,
+        driver: DriverKind = DriverKind.HAND,
         program: ControllerFile | None = None,
         facts: DriverFacts = BY_HAND,
         agent: tuple[str, Policy] | None = None,

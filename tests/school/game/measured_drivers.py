@@ -48,11 +48,11 @@ from tests.school.game.ordinary import REACTION_TICKS, KeyPresser
 LASER_PROGRAM: Final = house.PROGRAM
 MEASURED: Final = Path(__file__).with_name("measured_drivers.csv")
 DRIVERS: Final = {
-    "keys": DriverKind.KEYS,
-    "laser": DriverKind.CONTROLLER,
-    "map": DriverKind.CONTROLLER,
+    "keys": DriverKind.HAND,
+    "laser": DriverKind.PROGRAM,
+    "map": DriverKind.PROGRAM,
     "agent": DriverKind.AGENT,
-    "tape": DriverKind.CONTROLLER,
+    "tape": DriverKind.PROGRAM,
 }
 TRIES: Final = (16, 18, 20, 22, 24)
 """A hand drives so often, and is not equally quick each time: its delay, in ticks."""

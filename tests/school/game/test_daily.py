@@ -102,7 +102,7 @@ def test_an_ordinary_hand_is_slower_than_the_reference_of_a_day(day: datetime.da
 
 
 def test_a_tape_earns_nothing_on_a_day_either() -> None:
-    _, medal = judged(daily_level(DAY), DriverKind.CONTROLLER, tape_drives(daily_level(DAY)))
+    _, medal = judged(daily_level(DAY), DriverKind.PROGRAM, tape_drives(daily_level(DAY)))
     assert medal <= Medal.BRONZE
 
 
@@ -116,9 +116,9 @@ def test_the_first_run_of_a_day_counts_and_others_are_practice(
     with ProgressJournal(workspace.folder) as journal:
         join_leaderboard(journal, workspace, "Ada")
         is_practice = begin_run(journal, level)
-        record = record_drive(journal, workspace, level, DriverKind.KEYS, [first], is_practice=is_practice)
+        record = record_drive(journal, workspace, level, DriverKind.HAND, [first], is_practice=is_practice)
         is_practice = begin_run(journal, level)
-        again = record_drive(journal, workspace, level, DriverKind.KEYS, [better], is_practice=is_practice)
+        again = record_drive(journal, workspace, level, DriverKind.HAND, [better], is_practice=is_practice)
         events = journal.events(EventKind.FINISH, level.id)
     assert (record.is_practice, again.is_practice) == (False, True)
     assert record.medal > Medal.NONE
@@ -139,7 +139,7 @@ def test_a_run_in_another_workspace_does_not_take_the_place_of_the_first_one(tmp
     )
     assert better[0].seconds < first[0].seconds
     for _, recording in (first, better):
-        publish_drives(tmp_path, "Ada", {(level.id, DriverKind.KEYS): [recording]})
+        publish_drives(tmp_path, "Ada", {(level.id, DriverKind.HAND): [recording]})
     (entry,) = read_entries(tmp_path, [level])
     assert entry.seconds == first[0].seconds
 
@@ -157,7 +157,7 @@ def test_a_first_run_that_is_left_is_used_up_and_that_of_another_day_is_not(tmp_
 
 def finish(day: datetime.date, level: str, *, reached: bool = True) -> ProgressEvent:
     at = datetime.datetime.combine(day, datetime.time(12)).astimezone()
-    content = {"driver": "keys", "reached": reached, "seconds": 9.0, "bumps": 0, "medal": 1}
+    content = {"driver": "hand", "reached": reached, "seconds": 9.0, "bumps": 0, "medal": 1}
     return ProgressEvent(f"{day}{level}{reached}", at.isoformat(), EventKind.FINISH, level, content)
 
 

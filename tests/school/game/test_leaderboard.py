@@ -57,7 +57,7 @@ LEVELS = kit_levels()
 FIRST = LEVELS[0]
 BEDROOM = next(level for level in LEVELS if level.id == "the-bedroom")
 OWN = os.getuid()
-KEYS, CONTROLLER = DriverKind.KEYS, DriverKind.CONTROLLER
+KEYS, CONTROLLER = DriverKind.HAND, DriverKind.PROGRAM
 
 
 @cache
@@ -100,7 +100,7 @@ def test_the_leaderboard_lists_only_users_who_joined(tmp_path: Path) -> None:
     (entry,) = read_entries(board, [FIRST])
     assert (entry.level, entry.is_mine, "\x1b" in entry.name) == (FIRST.id, True, False)
     shutil.copy(board / f"{OWN}.json", board / "123456.json")  # written for somebody else
-    shutil.copy(own_file(board), board / f"123456.{FIRST.id}.keys.npz")
+    shutil.copy(own_file(board), board / f"123456.{FIRST.id}.hand.npz")
     (board / "999.json").symlink_to(board / f"{OWN}.json")
     (board / "0.txt").write_text("x")
     assert len(read_entries(board, [FIRST])) == 1
@@ -118,7 +118,7 @@ def finishes_only_in_the_journal(board: Path) -> None:
     workspace = open_workspace(board.parent / "desk")
     with ProgressJournal(workspace.folder) as journal:
         for level in LEVELS:
-            content = {"driver": "keys", "reached": True, "seconds": 1.0, "bumps": 0, "medal": 5, "rules": []}
+            content = {"driver": "hand", "reached": True, "seconds": 1.0, "bumps": 0, "medal": 5, "rules": []}
             journal.add(EventKind.FINISH, level.id, content)
         from kit.school.game.drive_records import join_leaderboard
 
@@ -128,7 +128,7 @@ def finishes_only_in_the_journal(board: Path) -> None:
 def times_in_the_name_file(board: Path) -> None:
     """Times, medals and tracks that the user's own file claims."""
     join(board)
-    level = {"stars": 5, "best": {"keys": 1.0}, "medals": {"keys": 5}, "tracks": {}}
+    level = {"stars": 5, "best": {"hand": 1.0}, "medals": {"hand": 5}, "tracks": {}}
     (board / f"{OWN}.json").write_text(json.dumps({"name": "Ada", "levels": {FIRST.id: level}}))
 
 
@@ -381,7 +381,7 @@ def of_many_users(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_replay_of_anothers_drive_by_hand_stands_nowhere(tmp_path: Path) -> None:
     board = join(tmp_path / "board", by_hand())
     (board / "7.json").write_text('{"name": "Bob"}')
-    copy = board / f"7.{FIRST.id}.keys.npz"
+    copy = board / f"7.{FIRST.id}.hand.npz"
     shutil.copy(own_file(board), copy)
     assert [each.user for each in read_entries(board, [FIRST])] == [OWN]
     os.utime(copy, (0, 0))  # a clock that is set back in the file says nothing
@@ -405,7 +405,7 @@ def test_a_replay_of_anothers_drive_by_hand_stands_nowhere(tmp_path: Path) -> No
 def test_a_copy_stands_nowhere_although_its_owner_has_driven_better_since(tmp_path: Path) -> None:
     board = join(tmp_path / "board", by_hand())
     (board / "7.json").write_text('{"name": "Bob"}')
-    shutil.copy(own_file(board), board / f"7.{FIRST.id}.keys.npz")
+    shutil.copy(own_file(board), board / f"7.{FIRST.id}.hand.npz")
     join(board, quicker())
     (entry,) = read_entries(board, [FIRST])
     assert (entry.user, entry.seconds < judge_recording(FIRST, by_hand()).seconds) == (OWN, True)
@@ -415,7 +415,7 @@ def test_a_copy_stands_nowhere_although_its_owner_has_driven_better_since(tmp_pa
 def test_a_copy_does_not_become_the_first_one_when_its_owner_leaves_the_board(tmp_path: Path) -> None:
     board = join(tmp_path / "board", by_hand())
     (board / "7.json").write_text('{"name": "Bob"}')
-    shutil.copy(own_file(board), board / f"7.{FIRST.id}.keys.npz")
+    shutil.copy(own_file(board), board / f"7.{FIRST.id}.hand.npz")
     leaderboard.remove_own_entry(board)
     assert read_entries(board, [FIRST]) == []
     join(board, by_hand())
@@ -435,13 +435,13 @@ def test_a_copied_drive_of_a_program_is_told_and_does_not_count(tmp_path: Path) 
     drives = race_from_all_starts(FIRST, find_controller(str(LASER_PROGRAM)))
     board = join(tmp_path / "board", *(recording for _, recording in drives), driver=CONTROLLER)
     (board / "7.json").write_text('{"name": "Bob"}')
-    shutil.copy(own_file(board, driver=CONTROLLER), board / f"7.{FIRST.id}.controller.npz")
+    shutil.copy(own_file(board, driver=CONTROLLER), board / f"7.{FIRST.id}.program.npz")
     entries = read_entries(board, [FIRST])
     assert [(each.user, each.copy_of) for each in entries] == [(OWN, ""), (7, "Ada")]
     assert "as Ada before" in "\n".join(lines_of([leaderboard_times(entries)]))
     assert [each.name for each in standings(entries)] == ["Ada"]
 
-    shutil.move(board / f"7.{FIRST.id}.controller.npz", board / f"7.{FIRST.id}.agent.npz")
+    shutil.move(board / f"7.{FIRST.id}.program.npz", board / f"7.{FIRST.id}.agent.npz")
     entries = read_entries(board, [FIRST])
     assert [(each.user, each.copy_of) for each in entries] == [(OWN, ""), (7, "Ada")], "called an agent"
 
@@ -453,9 +453,9 @@ def test_a_drive_of_a_program_is_none_by_hand(tmp_path: Path, user: int) -> None
     board = join(tmp_path / "board", *(recording for _, recording in drives), driver=CONTROLLER)
     (board / "7.json").write_text('{"name": "Bob"}')
     (own_start,) = (recording for _, recording in drives if recording.seed == OWN_SEED)
-    share_drives([own_start], board / f"{user}.{FIRST.id}.keys.npz")
+    share_drives([own_start], board / f"{user}.{FIRST.id}.hand.npz")
     assert [(each.user, each.driver) for each in read_entries(board, [FIRST])] == [(OWN, CONTROLLER)]
-    for file in board.glob(f"{OWN}.{FIRST.id}.controller.*"):
+    for file in board.glob(f"{OWN}.{FIRST.id}.program.*"):
         file.unlink()
     assert [each.user for each in read_entries(board, [FIRST])] == [user], "else it would stand"
 
@@ -492,7 +492,7 @@ def test_yesterdays_level_stays_a_day_with_who_drove_it_then(
 def test_two_of_one_name_are_told_apart(tmp_path: Path) -> None:
     board = join(tmp_path / "board", by_hand())
     (board / "7.json").write_text('{"name": "ADA"}')
-    share_drives([keys_drive(BEDROOM)[1]], board / f"7.{BEDROOM.id}.keys.npz")
+    share_drives([keys_drive(BEDROOM)[1]], board / f"7.{BEDROOM.id}.hand.npz")
     names = [each.name for each in read_entries(board, [FIRST, BEDROOM])]
     assert sorted(names) == sorted([f"Ada (user {OWN})", "ADA (user 7)"])
 
@@ -520,7 +520,7 @@ def test_a_drive_is_judged_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 def test_players_are_ranked_by_medals_and_then_by_stars() -> None:
     def entry(user: int, level: str, seconds: float, medal: Medal, stars: int) -> LeaderboardEntry:
         return LeaderboardEntry(
-            f"user {user}", level, DriverKind.KEYS, seconds, stars, user == 1, medal, user=user
+            f"user {user}", level, DriverKind.HAND, seconds, stars, user == 1, medal, user=user
         )
 
     by_agent = replace(entry(3, "b", 6.0, Medal.BRONZE, 2), driver=DriverKind.AGENT)
@@ -602,7 +602,7 @@ def test_a_long_name_is_cut_where_it_is_written_and_where_it_is_read(tmp_path: P
 
 def test_as_many_classmates_drive_along_as_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     others = [
-        LeaderboardEntry(f"user {number}", FIRST.id, DriverKind.KEYS, number, 0, False)
+        LeaderboardEntry(f"user {number}", FIRST.id, DriverKind.HAND, number, 0, False)
         for number in range(1, ghosts.MAX_CLASSMATES + 2)
     ]
     monkeypatch.setattr(leaderboard, "read_entries", lambda folder, levels: others[:-1])

@@ -19,8 +19,8 @@ def driven(level: object, times: dict[DriverKind, float]) -> LevelProgress:
 def test_the_smallest_part_of_the_time_decides() -> None:
     first, second = reference_seconds(FIRST) or 0.0, reference_seconds(SECOND) or 0.0
     levels = [
-        driven(FIRST, {DriverKind.KEYS: 1.9 * first}),
-        driven(SECOND, {DriverKind.KEYS: 1.31 * second, DriverKind.AGENT: 1.2 * second}),
+        driven(FIRST, {DriverKind.HAND: 1.9 * first}),
+        driven(SECOND, {DriverKind.HAND: 1.31 * second, DriverKind.AGENT: 1.2 * second}),
     ]
     asked = medal_time(Medal.SILVER, second)
     nearest, *others = medals_in_reach(levels)
@@ -31,4 +31,4 @@ def test_the_smallest_part_of_the_time_decides() -> None:
 def test_nothing_is_named_before_a_drive_and_after_the_record() -> None:
     assert not medals_in_reach([driven(FIRST, {})])
     best = medal_time(Medal.RECORD, reference_seconds(FIRST) or 0.0)
-    assert not medals_in_reach([driven(FIRST, {DriverKind.KEYS: best})])
+    assert not medals_in_reach([driven(FIRST, {DriverKind.HAND: best})])

@@ -84,8 +84,8 @@ def test_the_reference_drive_is_a_masters(level: GameLevel) -> None:
 @pytest.mark.parametrize("level", [pytest.param(each, id=each.id) for each in LEVELS])
 def test_a_tape_of_the_reference_drive_earns_bronze_at_most(level: GameLevel) -> None:
     """What is right for one start is wrong for four others. Nobody waits for those that come too late for silver."""
-    bar = SHARES[DriverKind.CONTROLLER][Medal.SILVER] * reference_seconds(level)
-    _, medal = judged(level, DriverKind.CONTROLLER, tape_drives(replace(level, time_limit=bar)))
+    bar = SHARES[DriverKind.PROGRAM][Medal.SILVER] * reference_seconds(level)
+    _, medal = judged(level, DriverKind.PROGRAM, tape_drives(replace(level, time_limit=bar)))
     assert medal <= Medal.BRONZE
 
 
@@ -93,7 +93,7 @@ def test_a_tape_of_the_reference_drive_earns_bronze_at_most(level: GameLevel) ->
 @pytest.mark.parametrize("level", [pytest.param(each, id=each.id) for each in LEVELS])
 def test_ordinary_skill_at_the_keys_has_a_rung_in_reach_and_is_no_master(level: GameLevel) -> None:
     """But for a leader that is to be followed for a given time, which everybody needs who keeps with it."""
-    finish, medal = judged(level, DriverKind.KEYS, [best_keys_drive(level)])
+    finish, medal = judged(level, DriverKind.HAND, [best_keys_drive(level)])
     assert medal >= Medal.BRONZE
     assert finish.seconds == pytest.approx(measured()[level.id, "keys"].seconds, abs=0.02), "measure it again"
     assert medal < Medal.MASTER or level.leader
@@ -237,7 +237,7 @@ def test_belts_rise_with_the_medals_of_a_world() -> None:
 
     def belt(*medals: Medal) -> str:
         found = [
-            replace(each, medals={DriverKind.KEYS: medal})
+            replace(each, medals={DriverKind.HAND: medal})
             for each, medal in zip(nothing, medals, strict=False)
         ]
         return belt_of([each.best_medal for each in (*found, *nothing[len(found) :])])

@@ -43,8 +43,8 @@ def test_only_drives_on_the_board_by_that_driver_are_counted(
 ) -> None:
     level = kit_levels()[0]
     monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(tmp_path / "board"))
-    assert seconds_needed(level, DriverKind.KEYS) == []
+    assert seconds_needed(level, DriverKind.HAND) == []
     finish, recording = keys_drive(level)
-    publish_drives(tmp_path / "board", "Ada", {(level.id, DriverKind.KEYS): [recording]})
-    assert seconds_needed(level, DriverKind.KEYS) == [finish.seconds]
-    assert seconds_needed(level, DriverKind.CONTROLLER) == []
+    publish_drives(tmp_path / "board", "Ada", {(level.id, DriverKind.HAND): [recording]})
+    assert seconds_needed(level, DriverKind.HAND) == [finish.seconds]
+    assert seconds_needed(level, DriverKind.PROGRAM) == []

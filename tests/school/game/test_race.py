@@ -171,18 +171,18 @@ def drive(
 
 def test_medals_are_counted_by_driver_beside_them() -> None:
     events = [
-        drive(FIRST.id, "keys", 7.0, medal=1, rules=["clean", "levitation"]),
-        drive(FIRST.id, "keys", 6.5, medal=2, rules=["no stop"]),
-        drive(FIRST.id, "controller", 6.1, medal=3, shipped=True),
+        drive(FIRST.id, "hand", 7.0, medal=1, rules=["clean", "levitation"]),
+        drive(FIRST.id, "hand", 6.5, medal=2, rules=["no stop"]),
+        drive(FIRST.id, "program", 6.1, medal=3, shipped=True),
         drive(FIRST.id, "agent", 9.0, medal=99, rules="clean"),
-        drive("the-door", "controller", 6.1, medal=3, shipped=True),
-        drive("the-door", "keys", 3.0, reached=False),
+        drive("the-door", "program", 6.1, medal=3, shipped=True),
+        drive("the-door", "hand", 3.0, reached=False),
         ProgressEvent("x", datetime.now(UTC).isoformat(), EventKind.FINISH, FIRST.id, {"driver": "horse"}),
     ]
     found = {each.level.id: each for each in level_progress(LEVELS, events)}
     first = found[FIRST.id]
-    assert first.medals == {DriverKind.KEYS: Medal.SILVER, DriverKind.AGENT: Medal.NONE}
-    assert first.best_times == {DriverKind.KEYS: 6.5, DriverKind.AGENT: 9.0}
+    assert first.medals == {DriverKind.HAND: Medal.SILVER, DriverKind.AGENT: Medal.NONE}
+    assert first.best_times == {DriverKind.HAND: 6.5, DriverKind.AGENT: 9.0}
     assert first.rules == {ExtraRule.CLEAN, ExtraRule.NO_STOP}
     assert found["left-turn"].is_open
     assert not found["two-doors"].is_open  # only a controller of the kit was through the door
@@ -223,13 +223,11 @@ def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(
     shipped = DriverFacts(is_shipped=True)
     of_today = daily_level(today())
     with ProgressJournal(workspace.folder) as progress:
-        nothing = record_drive(
-            progress, workspace, FIRST, DriverKind.CONTROLLER, [(finish, recording)], shipped
-        )
-        first = record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(finish, recording)], BY_HAND)
-        slower = record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(slow, recording)], BY_HAND)
+        nothing = record_drive(progress, workspace, FIRST, DriverKind.PROGRAM, [(finish, recording)], shipped)
+        first = record_drive(progress, workspace, FIRST, DriverKind.HAND, [(finish, recording)], BY_HAND)
+        slower = record_drive(progress, workspace, FIRST, DriverKind.HAND, [(slow, recording)], BY_HAND)
         (of_level,) = level_progress([FIRST], progress.events())
-        daily = record_drive(progress, workspace, of_today, DriverKind.KEYS, [(finish, recording)])
+        daily = record_drive(progress, workspace, of_today, DriverKind.HAND, [(finish, recording)])
     assert (daily.streak, first.streak) == (1, 0)
     assert (nothing.medal, nothing.rules, nothing.is_best, nothing.unlocked) == (Medal.NONE, (), False, ())
     assert (first.medal, slower.medal) == (Medal.MASTER, Medal.BRONZE)
@@ -238,7 +236,7 @@ def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(
     assert (first.is_best, slower.is_best, slower.previous_best) == (True, False, finish.seconds)
     assert ExtraRule.CLEAN in first.new_rules
     assert ExtraRule.CLEAN not in slower.new_rules
-    assert of_level.medals == {DriverKind.KEYS: Medal.MASTER}
+    assert of_level.medals == {DriverKind.HAND: Medal.MASTER}
     assert first.recording is not None
     (own,) = load_ghosts(workspace, FIRST)
     known = load_reference_ghost(FIRST)
@@ -270,11 +268,11 @@ def test_a_best_drive_that_does_not_run_again_gives_its_place_to_a_slower_one(
     (slow, slower), (best, quicker) = keys_drive(FIRST), drive_tidily(FIRST)
     of_another_kit = replace(quicker, poses=quicker.poses + 0.001)
     with ProgressJournal(workspace.folder) as progress:
-        record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(best, of_another_kit)])
+        record_drive(progress, workspace, FIRST, DriverKind.HAND, [(best, of_another_kit)])
         join_leaderboard(progress, workspace, "Ada")
         assert leaderboard.read_entries(board, [FIRST]) == []
         records = [
-            record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(slow, slower)]) for _ in range(2)
+            record_drive(progress, workspace, FIRST, DriverKind.HAND, [(slow, slower)]) for _ in range(2)
         ]
     assert [each.replaces for each in records] == [True, False], "told once"
     (entry,) = leaderboard.read_entries(board, [FIRST])
@@ -287,12 +285,12 @@ def test_classmates_who_joined_leave_ghosts(tmp_path: Path, monkeypatch: pytest.
     workspace = open_workspace(tmp_path / "desk")
     finish, recording = keys_drive(FIRST)
     with ProgressJournal(workspace.folder) as progress:
-        record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(finish, recording)])
+        record_drive(progress, workspace, FIRST, DriverKind.HAND, [(finish, recording)])
         join_leaderboard(progress, workspace, "Ada")
         (entry,) = leaderboard.read_entries(board, [FIRST])
         assert (entry.medal, entry.seconds, entry.is_same_platform) == (Medal.BRONZE, finish.seconds, True)
         better, quicker = drive_tidily(FIRST)
-        record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(better, quicker)])
+        record_drive(progress, workspace, FIRST, DriverKind.HAND, [(better, quicker)])
     (entry,) = leaderboard.read_entries(board, [FIRST])
     assert entry.seconds == better.seconds < finish.seconds, (
         "a better drive takes the place of the one before"

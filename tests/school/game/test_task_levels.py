@@ -99,14 +99,12 @@ def test_a_program_races_on_a_task_for_its_own_best_and_no_medal(own_task: Path,
     assert finish.reached
     with ProgressJournal(workspace.folder) as journal:
         first, second = (
-            record_drive(
-                journal, workspace, level, DriverKind.CONTROLLER, [(finish, recording)], DriverFacts()
-            )
+            record_drive(journal, workspace, level, DriverKind.PROGRAM, [(finish, recording)], DriverFacts())
             for _ in range(2)
         )
     assert (first.medal, first.rules, first.is_best) == (Medal.NONE, (), True)
     assert (second.is_best, second.previous_best) == (False, pytest.approx(finish.seconds, abs=0.001))
-    assert [each.name for each in load_ghosts(workspace, level)] == ["controller"]
+    assert [each.name for each in load_ghosts(workspace, level)] == ["program"]
     assert first.recording is not None
     saved = load_recording(first.recording)
     assert judge_recording(level, saved) == judge_recording(level, recording)

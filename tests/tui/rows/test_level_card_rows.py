@@ -38,13 +38,13 @@ def flat(card: dict[str, list[Row]]) -> list[Row]:
 def test_a_card_keeps_to_its_width_and_its_room(level: GameLevel, width: int) -> None:
     reference = reference_seconds(level)
     company = Company((Rival("P", "the reference", reference or 0.0), Rival("m", "mo", 12.5)))
-    whole = flat(level_card(level, DriverKind.KEYS, reference, (), width, 1000, company))
+    whole = flat(level_card(level, DriverKind.HAND, reference, (), width, 1000, company))
     assert all(row_width(each) <= width for each in whole)
     text = " ".join(row_text(each) for each in whole)
     assert all(medal.title in text for medal in RUNGS)
     assert ("mo" in text.split() and "12.50 s" in text) is (width >= WIDE)
     for room in range(len(whole)):
-        card = flat(level_card(level, DriverKind.KEYS, reference, (), width, room, company))
+        card = flat(level_card(level, DriverKind.HAND, reference, (), width, room, company))
         assert len(card) <= room
         assert all(each in whole for each in card)
     assert sorted(BY_WORTH) == sorted(PARTS)
@@ -66,7 +66,7 @@ def test_the_sectors_of_the_quickest_own_drive_stand_beside_the_stars() -> None:
     track = recording.track(level.find_scenario().partners[0])
     ghosts = [
         Ghost(name, took, (track,), recording.step_size)
-        for name, took in (("reference", seconds), ("keys", seconds + 2.0), ("agent", seconds + 1.0))
+        for name, took in (("reference", seconds), ("hand", seconds + 2.0), ("agent", seconds + 1.0))
     ]
     best = best_splits(ghosts)
     assert best is not None

@@ -143,7 +143,7 @@ def test_a_map_without_places_has_no_rows() -> None:
 def test_a_belt_and_a_count_of_each_world() -> None:
     first, *others = level_progress(kit_levels(), ())
     summary = GameSummary(
-        (replace(first, medals={DriverKind.KEYS: Medal.GOLD}), *others), challenges=(Medal.BRONZE,)
+        (replace(first, medals={DriverKind.HAND: Medal.GOLD}), *others), challenges=(Medal.BRONZE,)
     )
     counts, _, *worlds = map(row_text, game_progress(summary))
     assert counts.split() == ["gold", "1", "silver", "0", "bronze", "1", "stars", "0"]

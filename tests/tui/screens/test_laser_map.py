@@ -74,5 +74,5 @@ def test_fog_shows_what_the_laser_has_seen_and_no_more(tmp_path: Path) -> None:
 
     with ProgressJournal(workspace.folder) as journal:
         stage(
-            lambda theme: LevelDrive(theme, level, ghosts, journal, workspace, driver=DriverKind.KEYS), scene
+            lambda theme: LevelDrive(theme, level, ghosts, journal, workspace, driver=DriverKind.HAND), scene
         )

@@ -198,7 +198,7 @@ def test_a_game_of_tag_is_replayed_without_a_target(tmp_path: Path) -> None:
 def test_a_match_is_one_row_beside_the_standings(is_first: bool) -> None:
     level = find_level("left-turn")
     own, other = (
-        Entry(name, DriverKind.CONTROLLER, Path(name), name, name, is_mine=True)
+        Entry(name, DriverKind.PROGRAM, Path(name), name, name, is_mine=True)
         for name in ("my_controller", "the_other_one")
     )
     entrants = (own, other) if is_first else (other, own)

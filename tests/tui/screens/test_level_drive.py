@@ -57,7 +57,7 @@ def test_the_way_through_a_days_maze_is_drawn_after_the_first_run(tmp_path: Path
 
     with ProgressJournal(workspace.folder) as journal:
         if has_run:
-            content = {"driver": "keys", "reached": False, "seconds": 60.0, "bumps": 0, "medal": 0}
+            content = {"driver": "hand", "reached": False, "seconds": 60.0, "bumps": 0, "medal": 0}
             journal.add(EventKind.FINISH, CLEAR.id, content)
         stage(lambda theme: LevelDrive(theme, CLEAR, [reference], journal, workspace), scene)
 
@@ -162,7 +162,7 @@ def test_a_program_that_is_edited_after_its_drive_drives_again_and_is_judged_as_
         driven = ControllerFile("mine", program, "")
         stage(
             lambda theme: LevelDrive(
-                theme, level, [], journal, workspace, driver=DriverKind.CONTROLLER, program=driven
+                theme, level, [], journal, workspace, driver=DriverKind.PROGRAM, program=driven
             ),
             scene,
         )
@@ -173,10 +173,10 @@ def test_a_program_that_is_edited_after_its_drive_drives_again_and_is_judged_as_
     assert ExtraRule.FEW_LINES not in second.content["rules"], "they are counted anew"
 
 
-@pytest.mark.parametrize("driver", [DriverKind.KEYS, DriverKind.CONTROLLER])
+@pytest.mark.parametrize("driver", [DriverKind.HAND, DriverKind.PROGRAM])
 def test_the_help_of_a_drive_names_no_key_that_does_nothing(tmp_path: Path, driver: DriverKind) -> None:
     workspace = prepare_workspace(tmp_path / "home")
-    program = find_controller("circle") if driver is DriverKind.CONTROLLER else None
+    program = find_controller("circle") if driver is DriverKind.PROGRAM else None
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "forward")
@@ -245,7 +245,7 @@ def test_a_program_is_edited_while_it_drives_and_drives_again_if_it_is_another_o
         driven = ControllerFile("mine", program, "")
         stage(
             lambda theme: LevelDrive(
-                theme, level, [], journal, workspace, driver=DriverKind.CONTROLLER, program=driven
+                theme, level, [], journal, workspace, driver=DriverKind.PROGRAM, program=driven
             ),
             scene,
         )
@@ -304,7 +304,7 @@ def test_where_no_editor_is_named_the_kits_own_opens_and_what_is_saved_drives(
         level, driven = find_level("first-drive"), ControllerFile("mine", program, "")
         stage(
             lambda theme: LevelDrive(
-                theme, level, [], journal, workspace, driver=DriverKind.CONTROLLER, program=driven
+                theme, level, [], journal, workspace, driver=DriverKind.PROGRAM, program=driven
             ),
             scene,
         )

@@ -164,7 +164,7 @@ def test_the_stars_of_a_level_stand_below_the_list_of_every_world(
 ) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         for level in LEVELS:
-            drive = {"driver": "keys", "reached": True, "seconds": 900.0, "bumps": 0}
+            drive = {"driver": "hand", "reached": True, "seconds": 900.0, "bumps": 0}
             progress.add(EventKind.FINISH, level.id, drive)
         screen._read()
         for number, level in enumerate(LEVELS):
@@ -249,7 +249,7 @@ def test_a_locked_level_is_shown_dim_beside_its_rungs_and_stars(
             await wait_until_shown(pilot, lambda level=level: level.id in screen._scenes)
             await wait_until_shown(pilot, lambda is_open=is_open: screen._preview.is_dim is not is_open)
             card = " ".join(row_text(each) for each in screen._card_beside())
-            gold = medal_time(Medal.GOLD, screen._references[level.id], DriverKind.KEYS)
+            gold = medal_time(Medal.GOLD, screen._references[level.id], DriverKind.HAND)
             assert f"{gold:.2f} s" in card
             assert ExtraRule.CLEAN.description(level) in card
 
@@ -373,7 +373,7 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
         await wait_until_shown(pilot, lambda: "opened: Left turn" in flat(pilot.app))
         await pilot.press("y")
         await wait_until_shown(pilot, lambda: "A card to share" in flat(pilot.app))
-        assert (tmp_path / "desk" / "cards" / "first-drive.keys.txt").read_text().startswith("First drive")
+        assert (tmp_path / "desk" / "cards" / "first-drive.hand.txt").read_text().startswith("First drive")
         await pilot.press("escape")
         await pilot.pause()
         may_write = threading.Event()
@@ -453,7 +453,7 @@ def test_a_drive_that_is_cut_short_goes_on_where_it_was(progress: ProgressJourna
     (event,) = progress.events(EventKind.FINISH)
     assert event.content["reached"]
     assert ghosts.load_unfinished(workspace) is None
-    whole = ghosts.load_ghost(workspace, LEVELS[0], DriverKind.KEYS)
+    whole = ghosts.load_ghost(workspace, LEVELS[0], DriverKind.HAND)
     assert whole is not None
     assert whole.seconds > load_unfinished_s
     assert np.array_equal(whole.tracks[0][: recording.ticks], recording.track("serp"))
@@ -556,7 +556,7 @@ def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
 def test_medals_and_the_streak_have_room_in_the_heading(
     progress: ProgressJournal, tmp_path: Path, width: int
 ) -> None:
-    content = {"driver": "keys", "reached": True, "seconds": 6.5, "bumps": 0, "medal": 3}
+    content = {"driver": "hand", "reached": True, "seconds": 6.5, "bumps": 0, "medal": 3}
     for level in LEVELS[:12]:
         for driver in DriverKind:
             progress.add(
@@ -605,11 +605,11 @@ def test_a_large_leaderboard_tells_what_todays_level_asks_for(
 
 
 def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, tmp_path: Path) -> None:
-    forged = {"driver": "keys", "reached": True, "seconds": 1.5, "bumps": 0, "medal": 5}
+    forged = {"driver": "hand", "reached": True, "seconds": 1.5, "bumps": 0, "medal": 5}
     progress.add(EventKind.FINISH, LEVELS[1].id, forged)  # nothing was driven
     workspace = prepare_workspace(tmp_path / "desk")
     finish, recording = keys_drive(LEVELS[0])
-    record_drive(progress, workspace, LEVELS[0], DriverKind.KEYS, [(finish, recording)])
+    record_drive(progress, workspace, LEVELS[0], DriverKind.HAND, [(finish, recording)])
     shown = f"{finish.seconds:.2f} s"
     progress.add(EventKind.ABOUT, "name", {"value": "Ada"})
     board = leaderboard.leaderboard_folder()
@@ -641,7 +641,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     finish, recording = references.drive_reference(level)
     reference = ghosts.load_reference_ghost(level)
     assert reference is not None
-    others = [replace(reference, name=name) for name in ("keys", "controller", "agent", "Ada", "Ben", "Cleo")]
+    others = [replace(reference, name=name) for name in ("hand", "program", "agent", "Ada", "Ben", "Cleo")]
     record = DriveRecord(
         2,
         Medal.SILVER,
@@ -662,7 +662,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     splits = (ghosts.Split(2.0, 2.0, 0.1),) * 3
     result = DriveResult(
         level,
-        DriverKind.CONTROLLER,
+        DriverKind.PROGRAM,
         finish,
         record,
         recording,
@@ -700,10 +700,10 @@ def result_of(workspace: Workspace, progress: ProgressJournal) -> DriveResult:
     """A drive of the bend by an ordinary hand, which is gold."""
     level = next(each for each in LEVELS if each.id == "left-turn")
     finish, recording = keys_drive(level)
-    record = record_drive(progress, workspace, level, DriverKind.KEYS, [(finish, recording)])
+    record = record_drive(progress, workspace, level, DriverKind.HAND, [(finish, recording)])
     ghost = ghosts.load_reference_ghost(level)
     assert ghost is not None
-    return DriveResult(level, DriverKind.KEYS, finish, record, recording, [ghost], ghost.seconds, ())
+    return DriveResult(level, DriverKind.HAND, finish, record, recording, [ghost], ghost.seconds, ())
 
 
 def test_the_way_is_coloured_by_what_it_gained(progress: ProgressJournal, tmp_path: Path) -> None:
@@ -872,7 +872,7 @@ def test_on_80_columns_no_key_of_the_levels_is_missing_and_the_stars_are_seen(
             progress,
             prepare_workspace(tmp_path / "desk"),
             LEVELS[0],
-            DriverKind.KEYS,
+            DriverKind.HAND,
             [keys_drive(LEVELS[0])],
         )
         screen._refresh_after_drive(LEVELS[0])
@@ -920,7 +920,7 @@ def test_the_end_of_a_drive_shows_all_rungs_and_the_next_level(
         order = [shown.index(f" {each} ") for each in ("record", "master", "you", "silver", "bronze")]
         assert order == sorted(order), "the time stands among the rungs"
         slow = ladder_of_drive(
-            replace(result.finish, seconds=1.0), result.record, DriverKind.KEYS, 99.0, is_tall=True
+            replace(result.finish, seconds=1.0), result.record, DriverKind.HAND, 99.0, is_tall=True
         )
         assert max(map(row_width, slow)) < LADDER_COLUMNS, "nothing of it is cut"
         assert ("m/s" in shown) is (size[1] == 50)
@@ -946,7 +946,7 @@ def test_a_race_of_a_program_is_seen_and_a_controller_of_the_kit_earns_nothing(
         await pilot.press("3")
         await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen))
         (event,) = progress.events(EventKind.FINISH)
-        assert event.content["driver"] == "controller"
+        assert event.content["driver"] == "program"
         assert event.content["shipped"]
         assert event.content["medal"] == 0
         await pilot.press("escape")

@@ -50,7 +50,7 @@ def workspace(tmp_path: Path) -> Workspace:
     home = prepare_workspace(tmp_path / "home")
     recording = reference_recording(LEVEL)
     assert recording is not None
-    save_ghost(home, LEVEL, DriverKind.KEYS, [recording])
+    save_ghost(home, LEVEL, DriverKind.HAND, [recording])
     return home
 
 
@@ -71,7 +71,7 @@ def test_a_guest_sees_its_own_ghosts_at_the_time_of_the_race(workspace: Workspac
         screen = pilot.app.screen
         assert isinstance(screen, SharedGuestScreen)
         await until(pilot, lambda: screen.ghosts, "the ghosts")
-        assert {each.name for each in screen.ghosts} == {"keys", "reference"}
+        assert {each.name for each in screen.ghosts} == {"hand", "reference"}
         (reference,) = (each for each in screen.ghosts if each.name == "reference")
         for phase, seconds, wanted in (
             (SharedPhase.WAITING, 9.0, 0.0),

@@ -31,7 +31,7 @@ from kit.school.game.shared_sockets import user_name
 from kit.workspace import open_common_folder, write_atomically
 
 FOLDER: Final = "entries"
-MAX_BYTES: Final = {DriverKind.CONTROLLER: 256 << 10, DriverKind.AGENT: 4 << 20}
+MAX_BYTES: Final = {DriverKind.PROGRAM: 256 << 10, DriverKind.AGENT: 4 << 20}
 """Of an entry's file; an agent's network lies in it, and a program is read as code."""
 MAX_ENTRIES: Final = 500
 MAX_OF_ONE_USER: Final = 3
@@ -276,15 +276,15 @@ def _driver_and_code(content: bytes) -> tuple[DriverKind, str]:
     """Who drives with a program: an agent where it is the kit's own node of one; and the digest of its code, of an agent's that of
     what it has learned, however it is called."""
     if len(content) > max(MAX_BYTES.values()):
-        return DriverKind.CONTROLLER, _digest(content)
+        return DriverKind.PROGRAM, _digest(content)
     learned = learned_constants(content.decode(errors="replace"))
     if learned is not None:
         facts = sorted((name, value) for name, value in learned.items() if name != TITLE)
         return DriverKind.AGENT, _digest(repr(facts).encode())
     try:
-        return DriverKind.CONTROLLER, _digest(bare_code(content).encode())
+        return DriverKind.PROGRAM, _digest(bare_code(content).encode())
     except CODE_ERRORS:
-        return DriverKind.CONTROLLER, _digest(content)
+        return DriverKind.PROGRAM, _digest(content)
 
 
 @cache

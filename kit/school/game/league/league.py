@@ -535,7 +535,7 @@ def _rerun(content: bytes, level: GameLevel, players: int) -> tuple[JudgedJob, t
     """Runs what a result holds again, and judges it. Raises DriveRefused, RecordingError and ValueError."""
     shared = read_shared_drives(content)
     if players == 1:
-        drives = drives_again(shared, level, DriverKind.CONTROLLER)
+        drives = drives_again(shared, level, DriverKind.PROGRAM)
         finishes = tuple(finish for finish, _ in drives)
         judged = JudgedJob(finishes, remarks=shared.remarks, is_same_platform=shared.is_same_platform)
         return judged, tuple(recording for _, recording in drives)

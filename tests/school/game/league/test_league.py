@@ -73,7 +73,7 @@ from tests.school.game.league.house_results import house_jobs, house_judgement
 
 LEVEL = find_level("first-drive")
 ARENA = find_level("two-doors")
-CONTROLLER = DriverKind.CONTROLLER
+CONTROLLER = DriverKind.PROGRAM
 LASER = HOUSE_PROGRAM.read_bytes() + b"\nown = True\n"
 
 FRAME = """
@@ -892,9 +892,7 @@ def test_of_two_that_do_not_arrive_none_has_won_unless_a_program_has_failed() ->
 
     def points(first: JudgedJob, second: JudgedJob) -> float:
         jobs = [
-            LeagueJob(
-                name, level, (Entry(name, DriverKind.CONTROLLER, Path(name), name, name, is_mine=True),)
-            )
+            LeagueJob(name, level, (Entry(name, DriverKind.PROGRAM, Path(name), name, name, is_mine=True),))
             for name in ("first", "second")
         ]
         return race_match((jobs[0], jobs[1]), (first, second)).points
