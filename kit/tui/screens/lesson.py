@@ -43,6 +43,7 @@ from kit.tui.suspend import edit_aside, run_aside
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import (
     LEAST_ASIDE,
+    ROOMY_SIZE,
     FileColumns,
     LessonContent,
     LessonPage,
@@ -69,7 +70,9 @@ MOST_DRAWN: Final = 10
 MOST_PRINTED: Final = 7
 """Rows of what the program printed; `u` shows all."""
 EDITING: Final = "-editing"
-"""The screen's class while the editor is beside the task."""
+"""The screen's class while the editor is open."""
+EDITING_BESIDE: Final = "-editing-beside"
+"""Its class while the editor is not below the task."""
 WIDEST_EDITOR: Final = 100
 """Columns of the editor, beside the task or below it."""
 EDITOR_KEYS: Final = (
@@ -166,7 +169,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
     LessonScreen #workplace { height: 1fr; layout: vertical; }
     LessonScreen ProgramEditor { display: none; width: 1fr; max-width: 100%; height: 1fr; }
     LessonScreen.-editing ProgramEditor { display: block; }
-    LessonScreen.-editing.-wide #workplace { layout: horizontal; }
+    LessonScreen.-editing-beside #workplace { layout: horizontal; }
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
@@ -594,11 +597,12 @@ class LessonScreen(DialogueScreen, DriveScreen):
     @property
     def _editor_width(self) -> int:
         """Columns of the editor beside the task; 0 where it is below it or not shown."""
-        return min(WIDEST_EDITOR, self.room.width // 2) if self._is_editing and self.has_class("-wide") else 0
+        width = self.room.width
+        return min(WIDEST_EDITOR, width - LEAST_ASIDE) if self._is_editing and width >= ROOMY_SIZE[0] else 0
 
     def _editor_rows(self, room: int) -> int:
         """Rows of the editor below the task, of ``rows``; 0 where it is beside it or not shown."""
-        return room // 2 if self._is_editing and not self.has_class("-wide") else 0
+        return room // 2 if self._is_editing and not self._editor_width else 0
 
     def _edit_here(self, file: Path, line: int) -> str:
         """Opens a file in the editor, at a line; says why that is not possible."""
@@ -630,6 +634,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def _show_editor(self) -> None:
         """Closes the editor where its file is not the step's, gives it its place, and marks the line that the check names."""
         work, editor = self.dialogue.work, self._editor
+        self.set_class(self._editor_width > 0, EDITING_BESIDE)
         if editor is None or not self._is_editing:
             return
         if work is None or self.dialogue.has_ended or work.edited_file != editor.program.file:

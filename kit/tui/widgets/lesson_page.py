@@ -15,7 +15,6 @@ from textual.widget import Widget
 
 from kit.dialogue.dialogue import Panel
 from kit.document.rows import MARGIN, TEXT_WIDTH, Row, at_both_edges, broken, lines_shown, row, row_width
-from kit.plain_text import counted
 from kit.tui.rows.panel_rows import panel_rows
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
@@ -327,24 +326,23 @@ class LessonPage(Container):
         lines = [self._file_rows(line, columns) for line in content.file]
         starts = list(accumulate(map(len, lines), initial=0))
         whole = [each for line in lines for each in line]
-        room = self._file_room = max(1, rows - has_title)
-        self.is_file_cut = len(whole) > room
+        self.is_file_cut = len(whole) > rows - has_title
+        # The row that says which lines are shown.
+        room = self._file_room = max(1, rows - (has_title or self.is_file_cut))
         if self._file_top is None:
             above = room // 5 if room > 2 * LEAST_FILE else 0
             self._file_top = starts[min(content.file_line, len(lines))] - above
         top = self._file_top = max(0, min(self._file_top, len(whole) - room))
         shown = whole[top : top + room]
         last = top + len(shown)
+        keys = f"{'' if content.is_at_file else 'Tab '}↑↓" if self.is_file_cut else ""
+        first, end = bisect_right(starts, top) - 1, bisect_left(starts, last)
+        more = lines_shown(first, end - first, len(lines)) if self.is_file_cut else ""
         if has_title:
-            first, end = bisect_right(starts, top) - 1, bisect_left(starts, last)
-            more = lines_shown(first, end - first, len(lines)) if self.is_file_cut else ""
-            keys = ("" if content.is_at_file else "Tab ") + "↑↓" if more else ""
             title = row((content.file_title, "title"), (f"  {more}", "dim"))
             shown = [at_both_edges(title, row((keys, "dim")), columns - 1), *shown]
-        elif last < len(whole):
-            hidden = len(lines) - bisect_right(starts, last - 1) + 1
-            keys = self._scroll_keys(is_here=content.is_at_file)
-            shown[-1] = row((f"  ... {counted(hidden, 'more line')}: {keys}", "dim"))
+        elif more:
+            shown = [*shown, row((f"  {more}: {keys}", "dim"))]
         wide = min(columns - MARGIN, TEXT_WIDTH)
         self._rows("work").show([*shown, *panel_rows(aids, wide, rows - len(shown) - 1)])
 

@@ -787,7 +787,7 @@ async def opened_editor(pilot: Pilot[None], key: str = "ctrl+e") -> ProgramEdito
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("size", [(80, 24), (160, 50)])
+@pytest.mark.parametrize("size", [(80, 24), (120, 35), (160, 50)])
 def test_who_writes_in_the_editor_sees_task_and_verdict(student: Student, size: tuple[int, int]) -> None:
     student.goes_to(COLOUR)
 
