@@ -62,7 +62,7 @@ from kit.tui.terminal import LEAST_SIZE, TerminalFacts, TerminalOptions, decide_
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from tests.kit_content import kit_levels
-from tests.school.game.measured_drivers import keys_drive
+from tests.school.game.measured_drivers import best_keys_drive
 from tests.tui.lesson_stage import rows
 from tests.waiting import wait_until_shown
 
@@ -699,7 +699,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
 def result_of(workspace: Workspace, progress: ProgressJournal) -> DriveResult:
     """A drive of the bend by an ordinary hand, which is gold."""
     level = next(each for each in LEVELS if each.id == "left-turn")
-    finish, recording = keys_drive(level)
+    finish, recording = best_keys_drive(level)
     record = record_drive(progress, workspace, level, DriverKind.HAND, [(finish, recording)])
     ghost = ghosts.load_reference_ghost(level)
     assert ghost is not None
