@@ -62,7 +62,7 @@ from kit.tui.terminal import LEAST_SIZE, TerminalFacts, TerminalOptions, decide_
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from tests.kit_content import kit_levels
-from tests.school.game.measured_drivers import best_keys_drive
+from tests.school.game.measured_drivers import best_keys_drive, keys_drive
 from tests.tui.lesson_stage import rows
 from tests.waiting import wait_until_shown
 
