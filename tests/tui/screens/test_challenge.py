@@ -287,7 +287,7 @@ def test_every_challenge_fits(journal: ProgressJournal, tmp_path: Path, size: tu
     async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
         for each in all_challenges():
             await until(pilot, lambda each=each: levels.chosen_challenge is each, each.title)
-            await until(pilot, lambda each=each: f"> {each.title}" in "\n".join(rows(pilot)), each.title)
+            await until(pilot, lambda each=each: f">  {each.title}" in "\n".join(rows(pilot)), each.title)
             await seen(pilot, " ".join(each.story.split()[:4]))
             await seen(pilot, each.task_text.split()[-1])
             assert "c check" not in rows(pilot)[-1]
