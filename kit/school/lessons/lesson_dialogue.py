@@ -856,11 +856,11 @@ class LessonDialogue(Dialogue):
         DialogueAction(ACTIONS["replay"], replay, can_replay),
         DialogueAction(ACTIONS["solution"], show_solution, can_show_solution),
         DialogueAction(ACTIONS["next"], go_on, can_go_on, word=next_word, while_busy=True),
+        DialogueAction(letter("run_command", "o", "run", "run a command of this step here"), run_command, has_commands),
         DialogueAction(
             letter("code", "Tab", "code", "read the program, or the task", name="tab"), look_at_code, can_look_at_code,
             word=lambda dialogue: "task" if dialogue.is_at_code else "code", is_for_lines=False, while_busy=True,
         ),
-        DialogueAction(letter("run_command", "o", "run", "run a command of this step here"), run_command, has_commands),
         DialogueAction(ACTIONS["defend"], defend, can_defend),
         DialogueAction(letter("film", "d", "film", "let your own lines learn the floor, and drive"), film, can_film),
         DialogueAction(ACTIONS["second_terminal"], explain_second_terminal, has_beside),

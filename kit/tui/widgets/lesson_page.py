@@ -268,8 +268,10 @@ class LessonPage(Container):
         self._room = max(1, (room - rows - 1 if x else room) - len(content.asked))
         self._show_words()
         # Where they are whole, or else where they are less cut.
-        whole = len(panel_rows(content.aids, min(columns.file - MARGIN, TEXT_WIDTH), room)) < left
-        has_aids_here = not rows and (whole or below_words < left > LEAST_FILE)
+        has_aids_here = not rows and (
+            len(panel_rows(content.aids, min(columns.file - MARGIN, TEXT_WIDTH), room)) < left
+            or below_words < left > LEAST_FILE
+        )
         aids = () if has_aids_here else content.aids
         panels = () if columns.aside else content.panels
         self._content = replace(content, panels=(*panels[:1], *aids, *panels[1:]))
@@ -277,11 +279,12 @@ class LessonPage(Container):
         # the bottom, as far as the verdict leaves room.
         kept = max(content.most_words, len(content.words))
         reserved = max(kept, content.step_rows + self._offset + ROWS_FOR_VERDICT)
-        is_cut = self._panel_rows(room) != self._panel_rows(self._room - reserved)
+        below = self._panel_rows(room)
+        is_cut = len(below) >= self._room - reserved
         used = kept if is_cut else reserved
         height = min(used, self._room) if content.asked or not is_cut else "1fr"
         self._set_size(self._rows("words"), height=height)
-        self._show_below(self._room - used)
+        self._show_below(self._room - used, None if is_cut else below)
         beside = panel_rows(content.panels, columns.aside - MARGIN, room) if columns.aside else []
         self.set_class(bool(beside), "-aside")
         self._rows("aside").show(beside)
@@ -298,10 +301,11 @@ class LessonPage(Container):
         self._set_size(self.query_one("#right"), column if rows else "1fr", "1fr")
         self._rows("aside").show(rows)
 
-    def _show_below(self, room: int) -> None:
-        """Panels below the words and what is asked, at the bottom of the page. ``room``: rows that are kept free of words."""
+    def _show_below(self, room: int, rows: Sequence[Row] | None = None) -> None:
+        """Panels below the words and what is asked, at the bottom of the page. ``room``: rows that are kept free of words.
+        ``rows``: those of the panels, if they are known."""
         content = self._content
-        rows = self._panel_rows(room)
+        rows = self._panel_rows(room) if rows is None else rows
         self.set_class(bool(rows), "-panels")
         if rows:
             blank = [row()] * (room - len(rows) if content.asked else 0)
