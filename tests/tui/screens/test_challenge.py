@@ -360,11 +360,11 @@ def test_on_80_columns_the_list_uses_all_rows_and_has_the_board_beside_it(
     async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
         await seen(pilot, "██S@. . . . . . . ██")
         shown = rows(pilot)
-        below = max(number for number, each in enumerate(shown) if each[2:].startswith("The "))
+        below = max(number for number, each in enumerate(shown) if each[3:].startswith("The "))
         assert shown[below + 1].startswith(FIRST.title), "what is said of it comes right below"
         for each in all_challenges()[1:]:
             await pilot.press("down")
-            await seen(pilot, f"> {each.title}")
+            await seen(pilot, f">  {each.title}")
             assert rows(pilot)[below + 1].startswith(each.title[:20]), "it stays where it is"
 
     visit(scene, journal, tmp_path)
