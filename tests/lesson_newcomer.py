@@ -217,12 +217,12 @@ class ScreenNewcomer(Newcomer):
 
     def read(self, step: LessonStep) -> str:
         rows = [plain_text(each) for each in wrap_blocks(parse_markup(self.words_of(step)), TEXT_WIDTH)]
-        first, last = (without_blanks(row)[-ROW_END:] for row in (rows[0], rows[-1]))
+        ends = [without_blanks(row)[-ROW_END:] for row in rows]
 
         def is_painted() -> bool:
             """A terminal shows a new page bit by bit."""
             text = without_blanks(self.user.text)
-            is_whole = last in text or (MORE.search(self.user.text) and first in text)
+            is_whole = all(end in text for end in ends) or (MORE.search(self.user.text) and ends[0] in text)
             return self.is_at(step.number) and step.title in self.rows[1] and bool(is_whole)
 
         self.wait(is_painted, f"step {step.number}")

@@ -206,7 +206,7 @@ def test_below_another_first_screen_it_finds_the_same_places_and_asks_before_a_d
         await pilot.press(*name, "enter")
 
     async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, "front")
+        await seen(pilot, "forward")
         drive = pilot.app.screen
         await pilot.press("w")
         await choose(pilot, "map warehouse")
