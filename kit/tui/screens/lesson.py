@@ -519,9 +519,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def _celebrate(self, work: ExerciseAttempt) -> None:
         """Lets the line of a check that has passed move once, unless motion is reduced."""
         if work.report is not None and work.report.is_passed:
-            self.dialogue.is_at_code = (
-                False  # its run is seen in place of the code, where that has no place of its own
-            )
+            # Its run is seen in place of the code, where that has no place of its own.
+            self.dialogue.is_at_code = False
         if work.report is None or not work.report.is_passed or self.theme.terminal.reduce_motion.value:
             return
         self._passed_work, self._passed_at = work, time.monotonic()

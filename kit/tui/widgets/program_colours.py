@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from itertools import groupby
 from types import MappingProxyType
 from typing import Final
@@ -51,6 +52,11 @@ def coloured_rows(lines: Sequence[str], language: str | None) -> list[Row]:
     >>> coloured_rows(["import math  # all"], "python")
     [(('import', 'keyword'), (' math  ', ''), ('# all', 'comment'))]
     """
+    return list(_coloured(tuple(lines), language))
+
+
+@lru_cache(maxsize=8)  # a screen shows the same lines again at each key
+def _coloured(lines: tuple[str, ...], language: str | None) -> tuple[Row, ...]:
     text = "\n".join(lines)
     styles = [PLAIN] * len(text)
     for first, last, style in coloured_spans(text, language):
@@ -60,7 +66,7 @@ def coloured_rows(lines: Sequence[str], language: str | None) -> list[Row]:
     for line in lines:
         rows.append(_joined(line, styles[start : start + len(line)]))
         start += len(line) + 1
-    return rows
+    return tuple(rows)
 
 
 def _joined(line: str, styles: Sequence[str]) -> Row:
