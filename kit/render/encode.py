@@ -189,6 +189,8 @@ class BrailleEncoder:
     _bullet = ord("•")
     _wall_behind = 2
     """Dots of a wall in a character from which on the wall is its background."""
+    _body, _edge = 6, 3
+    """Dots of a robot in a character from which on it is drawn in quarter blocks: anywhere, and beside such a one."""
     _blocks = np.array([ord(glyph) for glyph in " ▘▝▀▖▌▞▛▗▚▐▜▄▙▟█"], dtype=np.uint32)
     """By their quarters: 1 upper left, 2 upper right, 4 lower left, 8 lower right."""
 
@@ -212,9 +214,25 @@ class BrailleEncoder:
             solid[:] = False
         glyphs[solid] = self._blocks[quarters[solid]]
         fg[solid & (fg == Role.TARGET)] = Role.WALL
+        if self._layers:
+            self._fill_robots(glyphs, fg, dots)
         if self._mono:
             glyphs[(fg == Role.HIT) | (fg == Role.WALL_HIT)] = self._bullet
         return Frame(glyphs, fg, bg)
+
+    def _fill_robots(self, glyphs: Grid, fg: Grid, dots: Grid) -> None:
+        """Makes robots' bodies solid: characters that are full of them, and their edges beside those. A line of dots, as that of
+        a heading, stays one."""
+        cells = np.nonzero((fg == Role.ROBOT) | (fg == Role.ROBOT_2))
+        own = dots[:, :, cells[0], cells[1]] == fg[cells]
+        counts = own.sum(axis=(0, 1))
+        full = np.zeros((fg.shape[0] + 2, fg.shape[1] + 2), dtype=bool)
+        full[1:-1, 1:-1][cells] = counts >= self._body
+        beside = full[:-2, 1:-1] | full[2:, 1:-1] | full[1:-1, :-2] | full[1:-1, 2:]
+        is_solid = full[1:-1, 1:-1][cells] | (beside[cells] & (counts >= self._edge))
+        quarters = np.bitwise_or.reduce((own[0::2] | own[1::2]) * self._quarter_bits[..., 0], axis=(0, 1))
+        rows, columns = cells[0][is_solid], cells[1][is_solid]
+        glyphs[rows, columns] = self._blocks[quarters[is_solid]]
 
 
 class HalfBlockEncoder:

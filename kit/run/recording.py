@@ -12,7 +12,7 @@ import math
 import struct
 from array import array
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol, Self
 
@@ -106,6 +106,22 @@ class Recording:
         """Whether any model comes ``least`` metres or radians away from where it once was."""
         tracks = (self.track(name) for name in self._model_names())
         return any(len(track) and float(np.ptp(track, axis=0).max()) >= least for track in tracks)
+
+    def first(self, ticks: int) -> Recording:
+        """Its first ticks alone.
+
+        >>> summary = kit.run_episode("maze", "forward", seconds=1.0, seed=1, record="run.npz")
+        >>> kit.load_recording("run.npz").first(30)
+        Recording(maze: 30 ticks of 0.01 s, serp)
+        """
+        counts = self.counts[:ticks]
+        return replace(
+            self,
+            models=tuple(each for each in self.models if each[0] < ticks),
+            inputs=tuple(each for each in self.inputs if each.tick < ticks),
+            poses=self.poses[: int(counts.sum())],
+            counts=counts,
+        )
 
     def _model_names(self) -> tuple[str, ...]:
         """The names of all models that there ever were."""

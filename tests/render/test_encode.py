@@ -139,6 +139,19 @@ def test_with_layers_a_wall_is_behind_the_robot_that_stands_before_it() -> None:
     assert (chr(frame.glyphs[0, 0]), frame.fg[0, 0], frame.bg[0, 0]) == ("⠁", Role.ROBOT, Role.WALL)
 
 
+@pytest.mark.parametrize("role", [Role.ROBOT, Role.ROBOT_2])
+def test_with_layers_a_robot_is_solid_and_the_line_of_its_heading_is_not(role: Role) -> None:
+    grid = np.zeros((16, 8), np.uint8)
+    grid[3:12, 1:6] = role  # its edges lie within characters
+    grid[0:3, 3] = role
+    assert BrailleEncoder(layers=True).encode(grid).rows() == ["⢀▟⣀", "▐██", "▐██", ""]
+    thin = np.zeros((8, 2), np.uint8)
+    thin[:, 0] = role
+    assert BrailleEncoder(layers=True).encode(thin).rows() == ["⡇", "⡇"]
+    for plain in (BrailleEncoder(), BrailleEncoder(mono=True)):
+        assert not set("".join(plain.encode(grid).rows())) & set("▗▐▖█▌▟▙")
+
+
 def test_dots_of_a_target_give_way_to_a_wall() -> None:
     grid = np.full((4, 2), Role.TARGET, dtype=np.uint8)
     grid[:2] = Role.WALL

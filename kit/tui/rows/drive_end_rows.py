@@ -32,6 +32,8 @@ SCALE: Final = 7
 """Columns of the scale before a curve."""
 RUN_OF_THE_DAY: Final = "this run counts; what follows is practice"
 REPLACES: Final = "it replaces a best that this kit drives differently"
+FILL: Final = "\u2501"
+"""Of bars."""
 MARK: Final = 5
 """Columns of a star before what it is for."""
 
@@ -138,7 +140,7 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
     return [
         row(
             f"   sector {number}  {each.sector:6.2f} s ",
-            ("=" * max(1, round(BAR * each.sector / longest)), "good" if each.difference <= 0 else ""),
+            (FILL * max(1, round(BAR * each.sector / longest)), "good" if each.difference <= 0 else ""),
             "  ",
             _difference(each.difference),
         )
@@ -191,7 +193,7 @@ def needed_rows(bins: Sequence[HistogramBin], width: int, unit: str = "s", decim
         start = f"   to {each.high:7.{decimals}f} {unit}  {each.count:3} "
         own = " < you" if each.holds_own else ""
         longest = max(1, min(BAR, width - len(start) - len(" < you")))
-        bar = "=" * max(1, round(longest * each.count / most)) if each.count else ""
+        bar = FILL * max(1, round(longest * each.count / most)) if each.count else ""
         rows.append(row(start, bar, (own, "bold")))
     return rows
 

@@ -25,14 +25,19 @@ HERE: Final = "\u25cf"
 """Where a drive stands on a ladder."""
 
 
-def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, width: int) -> Row:
-    """All rungs of a driver's ladder, as far apart as the logarithms of their times, and where a time stands among them.
+def ladder_bar(
+    driver: DriverKind, reference: float, seconds: float | None, width: int, is_flawed: bool = False
+) -> Row:
+    """All rungs of a driver's ladder, as far apart as the logarithms of their times, and where a time stands among them; that of
+    a drive which gets bronze at best, before all others.
 
     >>> from kit.document.rows import row_text
     >>> row_text(ladder_bar(DriverKind.HAND, 10.0, 15.0, 30))
     'B━━━━━━━━━━━●─────S──────G──MR'
     >>> row_text(ladder_bar(DriverKind.HAND, 10.0, 10.21, 30))
     'B━━━━━━━━━━━━━━━━━S━━━━━━G━●MR'
+    >>> row_text(ladder_bar(DriverKind.PROGRAM, 10.0, None, 13))
+    'B──────S──GMR'
     """
     shares = SHARES[driver]
     widest = math.log(shares[Medal.BRONZE])
@@ -40,10 +45,18 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
     def column(share: float) -> int:
         return round((width - 1) * (1.0 - min(math.log(max(share, 1.0)) / widest, 1.0)))
 
-    places = {medal: min(column(shares[medal]), width - 1 - (medal is not Medal.RECORD)) for medal in RUNGS}
+    places: dict[Medal, int] = {}
+    free = width - 1
+    for rung in reversed(RUNGS):  # each has a column of its own
+        places[rung] = min(column(shares[rung]), free)
+        free = places[rung] - 1
     here = -1
     if seconds is not None and seconds <= medal_time(Medal.BRONZE, reference, driver):
-        missed = [place for medal, place in places.items() if seconds > medal_time(medal, reference, driver)]
+        missed = [
+            place
+            for medal, place in places.items()
+            if seconds > medal_time(medal, reference, driver) or (is_flawed and medal > Medal.BRONZE)
+        ]
         here = min(  # before a rung that was missed by a hair
             [column(seconds / reference), *(place - 1 for place in missed)]
         )
@@ -104,10 +117,16 @@ def in_reach_row(driver: DriverKind, reference: float, seconds: float, is_flawed
 
 
 def rung_rows(
-    driver: DriverKind, reference: float, seconds: float | None = None, *, lost_after: float | None = None
+    driver: DriverKind,
+    reference: float,
+    seconds: float | None = None,
+    *,
+    lost_after: float | None = None,
+    is_flawed: bool = False,
 ) -> list[Row]:
     """A row for each rung, the highest first, with its time, and where a time stands among them with how far it is from each.
-    ``lost_after``: the time of a drive that goes on, for which some rungs are lost already [s]."""
+    ``lost_after``: the time of a drive that goes on, for which some rungs are lost already [s]; ``is_flawed``: whether it gets
+    bronze at best."""
     rows = []
     is_placed = seconds is None
     for medal in reversed(RUNGS):
@@ -123,7 +142,7 @@ def rung_rows(
                 else f"  {limit - seconds:.2f} s to spare"
             )
         is_earned = seconds is not None and seconds <= limit
-        is_lost = lost_after is not None and lost_after > limit
+        is_lost = lost_after is not None and (lost_after > limit or (is_flawed and medal > Medal.BRONZE))
         rows.append(
             row(
                 (f"{MEDAL_SIGNS[medal]} ", "dim" if is_lost else MEDAL_STYLES[medal]),

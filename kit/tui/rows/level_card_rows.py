@@ -100,10 +100,11 @@ def _ladder_rows(
     """The ladder, on it a drive that goes on with the best medal that it can still earn; and its rungs with their times."""
     ladder, rungs = [ruled_title("ladder", width, driver.phrase)], rung_rows(driver, reference)
     seconds = None if standing is None else standing.seconds or None
-    ladder.append(row(*ladder_bar(driver, reference, seconds, min(width, RESULT_BAR))))
+    is_flawed = standing is not None and standing.is_flawed
+    ladder.append(row(*ladder_bar(driver, reference, seconds, min(width, RESULT_BAR), is_flawed)))
     if standing is not None:
         ladder.append(in_reach_row(driver, reference, *standing))
-        rungs = rung_rows(driver, reference, lost_after=standing.seconds)
+        rungs = rung_rows(driver, reference, lost_after=standing.seconds, is_flawed=is_flawed)
     if standing is not None and width >= TWO_RUNGS:
         half = (len(rungs) + 1) // 2
         rungs = side_by_side(rungs[:half], rungs[half:], width // 2)

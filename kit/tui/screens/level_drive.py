@@ -454,6 +454,8 @@ class LevelDrive(EditsFile, WatchScreen):
         if self._race_program is not None:
             finish = replace(finish, failure=session.failure, sensors=sensors_in_use(session))
         if recording is not None:
+            # The world went on until this screen had seen the end.
+            recording = recording.first(round(finish.seconds / recording.step_size))
             try:
                 drives = self._other_starts((finish, recording))
                 record = record_drive(

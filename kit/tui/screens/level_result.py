@@ -417,8 +417,13 @@ def photo_finish(result: DriveResult) -> list[Row]:
             rest = track[min(round(first / step), len(track) - 1) :]
             missing = float(sum(((rest[1:] - rest[:-1]) ** 2).sum(axis=1) ** 0.5))
         column = FINISH_WIDTH - 1 - min(FINISH_WIDTH - 1, round(missing * 10.0))
-        line = "." * column + ">" + " " * (FINISH_WIDTH - 1 - column) + "|"
+        driven = drive_end_rows.FILL * column + "▶"
         rows.append(
-            row(f"   {name:<15.15} ", (line, "good" if name == "you" else "dim"), f" {missing:.2f} m")
+            row(
+                f"   {name:<15.15} ",
+                (driven, "good" if name == "you" else ""),
+                (f"{'─' * (FINISH_WIDTH - len(driven))}│", "dim"),
+                f" {missing:.2f} m",
+            )
         )
     return rows

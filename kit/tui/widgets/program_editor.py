@@ -8,6 +8,7 @@ import stat
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from types import MappingProxyType
 from typing import ClassVar, Final
 from weakref import finalize
 
@@ -30,6 +31,8 @@ from kit.tui.widgets.text_field import KitTextArea
 from kit.tui.widgets.text_rows import ERROR, SYNTAX_STYLES, TextRows
 from kit.workspace import write_atomically
 
+INDENTS: Final = MappingProxyType({"python": 4, "yaml": 2})
+"""Columns of one level of indentation, by language."""
 DRAFT_SUFFIX: Final = ".unsaved"
 """Ending of the file beside the program that keeps what was typed and not saved when the screen was left."""
 MAX_BYTES: Final = 1_000_000
@@ -234,6 +237,24 @@ class ProgramTextArea(KitTextArea):
         self.replace(text, self.document.start, self.document.end)
         self.history.checkpoint()
         self.move_cursor(place)
+
+    async def on_key(self, event: events.Key) -> None:
+        """Enter begins the next line below the first word of this one, or further right where it opens a block; Backspace
+        before the first word goes back by as much."""
+        start, end = sorted(self.selection)
+        before = self.document.get_line(start[0])[: start[1]]
+        indent = before[: len(before) - len(before.lstrip())]
+        step = INDENTS.get(self._coloured_as or "", 0)
+        if event.key == "enter":
+            deeper = " " * step * before.rstrip().endswith(":")
+            self._replace_via_keyboard(f"\n{indent}{deeper}", start, end)
+        elif event.key == "backspace" and start == end and before and before.isspace() and step:
+            kept = (len(before) - 1) // step * step
+            self._replace_via_keyboard("", (start[0], kept), end)
+        else:
+            return
+        event.prevent_default()
+        event.stop()
 
     async def _on_paste(self, event: events.Paste) -> None:
         """Refuses what is too much; what is not, Textual has the text area take afterwards."""

@@ -11,6 +11,7 @@ from kit.school.game.medal import RUNGS
 from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
 from kit.school.game.references import find_drive, reference_recording, reference_seconds
+from kit.tui.rows.ladder_rows import ABOUT_BAR, HERE, LIST_BAR, RESULT_BAR, ladder_bar
 from kit.tui.rows.level_card_rows import (
     BY_WORTH,
     COLUMN,
@@ -18,11 +19,13 @@ from kit.tui.rows.level_card_rows import (
     WIDE,
     Company,
     Rival,
+    Standing,
     best_splits,
     level_card,
     star_line,
     stars_and_sectors,
 )
+from kit.tui.rows.medal_signs import MEDAL_SIGNS
 from tests.kit_content import kit_levels
 from tests.tui.lesson_stage import row_text
 
@@ -48,6 +51,21 @@ def test_a_card_keeps_to_its_width_and_its_room(level: GameLevel, width: int) ->
         assert len(card) <= room
         assert all(each in whole for each in card)
     assert sorted(BY_WORTH) == sorted(PARTS)
+
+
+@pytest.mark.parametrize("driver", DriverKind)
+@pytest.mark.parametrize("width", [LIST_BAR, ABOUT_BAR, RESULT_BAR])
+def test_a_ladder_has_a_letter_for_each_rung(driver: DriverKind, width: int) -> None:
+    bar = row_text(ladder_bar(driver, 10.0, None, width))
+    assert [sign for sign in bar if sign.isalpha()] == [MEDAL_SIGNS[each] for each in RUNGS]
+
+
+def test_a_drive_that_gets_bronze_at_best_stands_before_silver() -> None:
+    clean, flawed = (Standing(10.1, is_flawed) for is_flawed in (False, True))
+    for standing, higher in ((clean, "R"), (flawed, "S")):
+        card = level_card(LEVELS[0], DriverKind.HAND, 10.0, (), 50, 100, Company(()), standing)
+        bar = next(text for each in flat(card) if HERE in (text := row_text(each)))
+        assert bar[bar.index(HERE) + 1 :].lstrip("─")[0] == higher
 
 
 def test_rules_that_were_kept_have_their_star() -> None:

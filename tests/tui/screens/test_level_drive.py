@@ -16,7 +16,7 @@ from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.run.session import Session
 from kit.school.game.daily import daily_level
 from kit.school.game.drive_commands import DriveCommand, ReferenceDrive
-from kit.school.game.ghosts import load_reference_ghost
+from kit.school.game.ghosts import load_ghost, load_reference_ghost
 from kit.school.game.levels import find_level
 from kit.school.game.medal import RUNGS
 from kit.school.game.player_progress import ExtraRule
@@ -121,6 +121,26 @@ def test_a_drive_waits_behind_a_dialog_and_goes_on_after_it(tmp_path: Path) -> N
 
     with ProgressJournal(workspace.folder) as journal:
         stage(lambda theme: LevelDrive(theme, level, [], journal, workspace), scene)
+
+
+@pytest.mark.long
+def test_a_kept_drive_ends_when_it_was_judged(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    level = replace(find_level("first-drive"), goal=REACH_TARGET, targets=())
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LevelDrive)
+        await until(pilot, lambda: screen.view is not None, "the world")
+        screen.drive_keys_changed(("p_up",), screen.drive.state)
+        await until(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen), "the end")
+
+    with ProgressJournal(workspace.folder) as journal:
+        stage(lambda theme: LevelDrive(theme, level, [], journal, workspace), scene)
+        (finish,) = journal.events(EventKind.FINISH)
+    ghost = load_ghost(workspace, level, DriverKind.HAND)
+    assert ghost is not None
+    assert ghost.seconds == pytest.approx(finish.content["seconds"], abs=1e-6)
 
 
 STOPS = "raise RuntimeError('not yet')\n"

@@ -61,6 +61,36 @@ def test_the_private_names_of_the_text_area_are_there() -> None:
     assert _text_area_theme.TextAreaTheme("x", syntax_styles={"a": SYNTAX_STYLES["keyword"]}).syntax_styles
 
 
+@every_case(
+    ("language", "lines", "keys", "expected"),
+    [
+        ("python", "    a = 1", ["enter", "b"], "    a = 1\n    b"),
+        ("python", "    if a:", ["enter", "b"], "    if a:\n        b"),
+        ("yaml", "a:", ["enter", "b"], "a:\n  b"),
+        ("python", "    if a:", ["enter", "backspace", "backspace", "b"], "    if a:\nb"),
+        ("python", "  ab", ["left", "enter"], "  a\n  b"),
+        ("python", "    ab", ["backspace"], "    a"),
+        (None, "a:", ["enter", "b"], "a:\nb"),
+    ],
+)
+def test_enter_begins_where_the_line_above_does(
+    language: str | None, lines: str, keys: list[str], expected: str
+) -> None:
+    class AreaScreen(Screen[None]):
+        def compose(self) -> ComposeResult:
+            yield ProgramTextArea()
+
+    async def scene(pilot: Pilot[None]) -> None:
+        area = pilot.app.screen.query_one(ProgramTextArea)
+        area.focus()
+        area.show_text(lines, language)
+        area.move_cursor(area.document.end)
+        await pilot.press(*keys)
+        assert area.text == expected
+
+    stage(AreaScreen, scene)
+
+
 def styles_in(area: ProgramTextArea) -> dict[str, set[str]]:
     """The texts that are in each style, each as long as the style goes on."""
     found: dict[str, set[str]] = {}
