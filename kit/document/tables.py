@@ -91,7 +91,7 @@ def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collec
         for number, column in enumerate(table.columns):
             text = format_cell(cells[number], column)
             cells[number] = ToneText(text, Tone.CHOSEN)
-            if any(map(str.isalpha, text)):
+            if column.style is not CellStyle.NUMBER and any(map(str.isalpha, text)):
                 break
         table = replace(table, rows=(*table.rows[:chosen], tuple(cells), *table.rows[chosen + 1 :]))
     placed = table_rows(replace(table, is_ruled=False), width - LIST_MARGIN)

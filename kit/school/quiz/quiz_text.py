@@ -212,7 +212,7 @@ def calibration_blocks(calibration: Calibration) -> list[Block]:
     for level in calibration.levels:
         share = level.right / level.answers if level.answers else 0.0
         result = f"{level.right} of {level.answers}" if level.answers else "-"
-        rows.append((CONFIDENCE_LABELS[level.confidence], result, "#" * round(BAR * share)))
+        rows.append((CONFIDENCE_LABELS[level.confidence], result, "━" * round(BAR * share)))
     columns = (Column("", _WORDS), Column(""), Column("", _WORDS))
     return [
         Table("calibration", "", columns, tuple(rows), is_tight=True),

@@ -88,7 +88,7 @@ def how_it_ended(finishes: Sequence[RaceFinish], counts: int, *, was_watched: bo
         return [f"{said} Of {len(finishes)} starts the middle one counts."]
     return [
         f"{'You watched start 1' if was_watched else 'Start 1'}: {first}",
-        f"Start {counts + 1} counts, the middle of {len(finishes)}: {said}",
+        f"Of {len(finishes)} starts the middle one counts, here start {counts + 1}: {said}",
     ]
 
 

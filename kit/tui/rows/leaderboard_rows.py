@@ -67,12 +67,13 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
         for level, title in titles.items()
         for cells in _times_on(entries, level, BEST_TODAY if level.startswith(DAILY_PREFIX) else BEST)
     )
-    return Table("times", "", (Column("", CellStyle.TEXT), *_TIMES), rows, grouped=True)
+    return Table("times", "", (Column("", CellStyle.TEXT), *_TIMES), rows, grouped=True, is_ruled=False)
 
 
 def todays_times(entries: Sequence[LeaderboardEntry]) -> Table:
     """The quickest drives of today's level alone."""
-    return Table("today", "", _TIMES, tuple(_times_on(entries, daily_id(today()), BEST_TODAY)))
+    rows = tuple(_times_on(entries, daily_id(today()), BEST_TODAY))
+    return Table("today", "", _TIMES, rows, is_ruled=False)
 
 
 _TIMES: Final = (Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
@@ -105,4 +106,10 @@ def times_to_beat(found: Sequence[LevelProgress], medals: Sequence[Medal]) -> Ta
     )
     yours = (Column(f"you {driver.phrase}") for driver in drivers)
     asked = (Column(medal.title) for medal in medals)
-    return Table("to-beat", "", (Column("level", CellStyle.TEXT), *asked, Column("reference"), *yours), rows)
+    return Table(
+        "to-beat",
+        "",
+        (Column("level", CellStyle.TEXT), *asked, Column("reference"), *yours),
+        rows,
+        is_ruled=False,
+    )

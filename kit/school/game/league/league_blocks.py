@@ -163,7 +163,7 @@ def level_grid(standings: Standings, name: str) -> Table:
         for title in dict.fromkeys(title for title, _ in signs)
     )
     columns = (Column(f"{name}, level by level", TEXT), *(Column(each, TEXT) for each in met))
-    return Table("levels", "", columns, rows)
+    return Table("levels", "", columns, rows, is_ruled=False)
 
 
 def _match_title(match: Match) -> str:
