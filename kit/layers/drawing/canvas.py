@@ -27,6 +27,8 @@ _ASCII_FRAMES: Final = {
 
 _BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """The bit of each dot of a braille character, by row and column."""
+DASH: Final = 4
+"""Dots of a dash, and between two, of a line that is struck."""
 BOX_ROWS: Final = 4
 
 
@@ -142,9 +144,11 @@ class TextCanvas:
     ) -> None:
         x0, y0, x1, y1 = (2 * start[0] + 0.5, 4 * start[1] + 1.5, 2 * end[0] + 0.5, 4 * end[1] + 1.5)
         steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
-        every = {"struck": 4, "beam": 3}.get(style, 1)
+        every = 3 if style == "beam" else 1
         aside = (1, 0) if abs(y1 - y0) > abs(x1 - x0) else (0, 1)
         for step in range(0, steps + 1, every):
+            if style == "struck" and step % (2 * DASH) >= DASH:
+                continue
             x, y = round(x0 + (x1 - x0) * step / steps), round(y0 + (y1 - y0) * step / steps)
             self._set_dot(x, y, style)
             if style == "group edge":

@@ -32,7 +32,7 @@ def draw_graph(
 ) -> list[DrawingLine]:
     """The collision graph as a picture of ``width`` x ``height`` characters.
 
-    Edges are lines; a struck one is faint dots; one inside the ``group`` is drawn thick, and the names of the
+    Edges are lines; a struck one is faint dashes; one inside the ``group`` is drawn thick, and the names of the
     group stand in ``[ ]``. Maps stand between ``# #``. A ``laser``, in ``< >``, sends a dotted beam to everything
     it must see. ``wrong``: pairs that collide and must not, as lines of their own. ``cursor``: a name that stands out.
     ``boxes``: where no two would touch, each name stands in a box that says what it is.
