@@ -263,7 +263,7 @@ def test_a_foreign_file_is_no_recording(tmp_path: Path, content: bytes) -> None:
     file.write_bytes(content)
     assert kit("replay", "--check", file).exit_code == 2
     file.unlink()
-    assert "No such file" in kit("replay", "--check", file).stderr
+    assert f"There is no recording {file}" in kit("replay", "--check", file).stderr
 
 
 def test_a_recording_cut_short_is_no_recording(tmp_path: Path) -> None:

@@ -88,7 +88,7 @@ def how_it_ended(finishes: Sequence[RaceFinish], counts: int, *, was_watched: bo
         return [f"{said} Of {len(finishes)} starts the middle one counts."]
     return [
         f"{'You watched start 1' if was_watched else 'Start 1'}: {first}",
-        f"Of {len(finishes)} starts the middle one counts, here start {counts + 1}: {said}",
+        f"The middle one counts, start {counts + 1} of {len(finishes)}: {said}",
     ]
 
 

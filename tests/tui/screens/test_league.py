@@ -39,6 +39,7 @@ def test_an_empty_league_says_how_to_enter_and_a_program_enters_by_a_key(tmp_pat
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Nobody is entered")
         assert "kit league" not in text(pilot), "keys do it here"
+        await seen(pilot, "quick (house)")
         await pilot.press("enter")
         await seen(pilot, "Matches of quick (house)")
         await pilot.press("escape")
