@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from kit.document.rows import Row, StyledText, at_both_edges, row
+from kit.document.rows import Row, StyledText, at_both_edges, row, row_width
 from kit.geometry import whole_degrees
 from kit.plain_text import format_clock, wrap
 from kit.run.pacing import MAXIMUM, PacingStatus
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 
 PANEL_WIDTH = 23
+LEAST_BAR, LONGEST_BAR = 10, 60
+"""Columns of the bar of what is replayed."""
 SLACK = 0.1
 """The share by which the simulation may miss the speed that was asked for before the heading says so."""
 
@@ -22,16 +24,22 @@ _LOUD: Final = {"WARN": "warn", "ERROR": "bad", "FATAL": "bad"}
 """Styles by a message's severity."""
 
 
-def heading(view: View, pacing: PacingStatus, width: int, driver: str = "") -> Row:
+def heading(
+    view: View, pacing: PacingStatus, width: int, driver: str = "", length_s: float | None = None
+) -> Row:
     """Map and controller on the left; state, speed and time on the right. ``driver``: who drives, where no controller
-    does."""
+    does. ``length_s``: of what is replayed, of which a bar shows how far it has come [s]."""
     who = view.controller or driver or "no driver"
     left = row((view.title, "title"), "  ", who)
-    return at_both_edges(
-        left,
-        (*_state_row(view, pacing), (f"  {format_clock(view.time_s, 2 if view.paused else 1)}", "bold")),
-        width,
-    )
+    clock = format_clock(view.time_s, 2 if view.paused else 1)
+    right = row(*_state_row(view, pacing), (f"  {clock}", "bold"))
+    if length_s:
+        right = (*right, (f" of {format_clock(length_s, 1)}", "dim"))
+        room = min(width - row_width(left) - row_width(right) - 4, LONGEST_BAR)
+        if room >= LEAST_BAR:
+            filled = round(room * min(view.time_s / length_s, 1.0))
+            right = (("━" * filled, "good"), ("─" * (room - filled), "dim"), ("  ", ""), *right)
+    return at_both_edges(left, right, width)
 
 
 def _state_row(view: View, pacing: PacingStatus) -> Row:

@@ -27,7 +27,12 @@ if TYPE_CHECKING:
     from kit.learning.policies.policy import Policy
     from kit.run.recording_file import RecordingFile
     from kit.run.session import Session
+    from kit.run.view import View
     from kit.school.lessons.records import LessonScene
+
+
+SEEK_S: Final = 5.0
+"""A replay goes so far back or ahead at a key [s]."""
 
 
 class ReplayScreen(WatchScreen):
@@ -35,10 +40,14 @@ class ReplayScreen(WatchScreen):
 
     screen_actions = ScreenActions(
         "replay",
-        ("pause", "step", "speed", "restart", "zoom", "help", "back", "quit"),
+        ("pause", "seek", "step", "speed", "restart", "zoom", "help", "back", "quit"),
         ("agent_view", *VIEW_IDS),
+        own=(
+            ScreenAction("seek", "Left Right", "seek", f"go {SEEK_S:.0f} s back or ahead",
+                         (("left", f"seek({-SEEK_S})"), ("right", f"seek({SEEK_S})")), "←→"),
+        ),
         drives=True,
-    )
+    )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     shows_mode = False
     escape_leaves = True
@@ -48,6 +57,13 @@ class ReplayScreen(WatchScreen):
         self.driver_name = title
         self._place = place
         self._recording = recording
+        self.length_s = recording.ticks * recording.step_size
+        self._first = 0
+        """The tick from which on it is shown."""
+        self._is_halted = False
+        """Whether it stands still there."""
+        self._is_sought = False
+        """Whether a view of that tick is still to come."""
 
     def watch_agent(self, name: str, policy: Policy | None) -> None:
         """Shows from the first moment on what this agent perceives on the way; None: no agent drove."""
@@ -71,10 +87,34 @@ class ReplayScreen(WatchScreen):
         session = Session(self._place, seed=told.seed, step_size=told.step_size, always_scan=True)
         show_goal(session)
         session.play_back(told)
+        for _ in range(self._first):
+            session.runner.tick()
+        session.runner.paused |= self._is_halted
         return session
+
+    def is_drive_key(self, key: str) -> bool:
+        """What is over cannot be driven."""
+        return False
+
+    def _view_arrived(self, view: View) -> None:
+        self._is_sought = False
+        super()._view_arrived(view)
+
+    def action_seek(self, seconds: float) -> None:
+        """Goes back or ahead; stands still there if it does now."""
+        if self.view is None:
+            return
+        if not self._is_sought:
+            self._first = self.view.tick
+            self._is_halted = self.view.paused and self.view.tick < self._recording.ticks
+        ahead = round(seconds / self._recording.step_size)
+        self._first = max(0, min(self._first + ahead, self._recording.ticks))
+        self.open_world()
+        self._is_sought = True
 
     def action_restart(self) -> None:
         """Starts the drive from the beginning."""
+        self._first, self._is_halted = 0, False
         self.open_world()
 
 
@@ -231,9 +271,6 @@ class RecordedDriveScreen(WatchScreen):
 
 class RecordingScreen(ReplayScreen):
     """A run of a check, looked at again; Esc goes back to the lesson."""
-
-    def is_drive_key(self, key: str) -> bool:
-        return False
 
     def action_back(self) -> None:
         self.dismiss()

@@ -127,6 +127,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self.view: View | None = None
         self.driver_name = ""
         """What the title says drives, where no controller does."""
+        self.length_s: float | None = None
+        """Of what is replayed [s]."""
         self.host: SessionHost
         self._history = SpeedHistory()
         self._notice: Row | None = None
@@ -357,7 +359,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             return
         self._fit_panel()
         self.world.offer(self._newest_scene)
-        self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
+        self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name, self.length_s)])
         panel = self._panel_rows(view)
         self._rows("panel").show(panel)
         self._tells_messages = self._widths.total > 0 and tells_messages(panel)

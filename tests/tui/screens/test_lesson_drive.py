@@ -10,14 +10,16 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
+import kit
 from kit.part_file import lock_part, part_path
 from kit.run.recording import load_recording
+from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import read_lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.screens.lesson import LessonScreen
-from kit.tui.screens.lesson_drive import RecordedDriveScreen
+from kit.tui.screens.lesson_drive import RecordedDriveScreen, ReplayScreen
 from kit.tui.theme import Theme
 from kit.workspace import open_workspace
 from tests.tui.lesson_folder import write_drive
@@ -213,3 +215,34 @@ def test_ctrl_c_in_a_drive_goes_back_to_the_lesson(
 
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
     assert file.exists()
+
+
+def test_a_replay_goes_back_and_ahead_and_is_the_same_run_there(tmp_path: Path) -> None:
+    file = tmp_path / "run.npz"
+    kit.run_episode("maze", "avoid", seconds=20.0, seed=3, record=file)
+    recording = load_recording(file)
+    place = find_scenario("maze")
+    track = recording.track(place.robot or "")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, ReplayScreen)
+        await until(pilot, lambda: screen.view is not None, "the world")
+        await pilot.press("3")
+        await until(pilot, lambda: screen.view is not None and screen.view.tick == 2000, "its end")
+        screen.host.set_factor(1e-4)  # a second in which nothing moves
+        await pilot.press("left", "left")
+        await until(pilot, lambda: screen.view is not None and 1000 <= screen.view.tick < 1100, "10 s back")
+        assert screen.view is not None
+        assert screen.view.pose is not None
+        assert tuple(screen.view.pose) == pytest.approx(tuple(track[screen.view.tick - 1]))
+        assert "of 0:20.0" in rows(pilot)[0]
+        await pilot.press("p")
+        await until(pilot, lambda: screen.view is not None and screen.view.paused, "the pause")
+        await pilot.press("right")
+        await until(pilot, lambda: screen.view is not None and screen.view.tick >= 1500, "5 s ahead")
+        assert screen.view.paused
+        await pilot.press("left", "left", "left", "left")
+        await until(pilot, lambda: screen.view is not None and screen.view.tick == 0, "not before its start")
+
+    stage(lambda theme: ReplayScreen(theme, place, recording, "avoid"), scene)
