@@ -184,3 +184,22 @@ def unreadable_file(file: Path, reason: str) -> Failure:
 
 def _failure_at(kind: FailureKind, message: str, where: StackPosition | None) -> Failure:
     return Failure(kind, message, where.file, where.line) if where else Failure(kind, message)
+
+
+def syntax_error(text: str) -> SyntaxError | None:
+    """Why a text is no program of Python, if that is so because of one of its characters. It is read, never run.
+
+    >>> syntax_error("a = = 1").offset
+    5
+    """
+    import ast
+    import warnings
+
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            ast.parse(text)
+    except SyntaxError as error:
+        return error
+    except (ValueError, RecursionError, MemoryError):  # a NUL, or nested too deeply
+        return None
+    return None

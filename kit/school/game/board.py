@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import accumulate, groupby
 from types import MappingProxyType
 from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
@@ -167,10 +167,11 @@ def grid_rows(
     signs: Mapping[Cell, tuple[str, str]],
     scale: int = 1,
     figures: Mapping[Cell, tuple[str, str]] = NO_FIGURES,
+    lit: Collection[Cell] = (),
 ) -> list[Row]:
     """A grid as rows, for each cell ``scale`` rows of twice as many columns; walls at the edges of the grid are as thin as can be.
     ``signs``: sign and style of cells that differ from the drawing; where one begins, the start's is kept before it. ``figures``:
-    of cells, with their style, below the sign in cells that are large enough."""
+    of cells, with their style, below the sign in cells that are large enough. ``lit``: cells that are lit around their sign."""
     rows, columns = len(grid), max(map(len, grid))
 
     def is_thin(number: int, count: int, line: Iterable[str]) -> bool:
@@ -192,7 +193,8 @@ def grid_rows(
         elif part == middle + 1 and scale >= LEAST_WITH_FIGURES:
             text, figure_style = figures.get((row, column), ("", ""))
             style = style if style == "chosen" else figure_style
-        return f"{text.center(2 * scale - 1)} "[: 2 * scale], style
+        fill = LIT if (row, column) in lit else " "
+        return f"{text.center(2 * scale - 1, fill)}{fill}"[: 2 * scale], style
 
     return [
         (("  ", ""), *_join_by_style(shown(row, column, part) for column in range(len(line))))

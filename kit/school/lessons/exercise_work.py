@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import threading
 import time
-import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cached_property
@@ -14,6 +12,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Final
 
+from kit.host.failure import syntax_error
 from kit.host.file_watcher import FileWatcher
 from kit.results.result_blocks import replay_lines
 from kit.school.lessons.checking import (
@@ -60,18 +59,6 @@ def _is_text(file: Path) -> bool:
         return True
     except (OSError, UnicodeDecodeError):
         return False
-
-
-def _syntax_error(text: str) -> SyntaxError | None:
-    """Why a text is no program of Python, if that is so because of one of its characters. It is read, never run."""
-    try:
-        with warnings.catch_warnings(action="ignore"):
-            ast.parse(text)
-    except SyntaxError as error:
-        return error
-    except (ValueError, RecursionError, MemoryError):
-        return None
-    return None
 
 
 class ExerciseAttempt:
@@ -206,7 +193,7 @@ class ExerciseAttempt:
         lines, number = self.edited_lines(), self.error_line
         if not 0 < number <= len(lines):
             return 1
-        found = _syntax_error("\n".join(lines)) if self.edited_file.suffix == ".py" else None
+        found = syntax_error("\n".join(lines)) if self.edited_file.suffix == ".py" else None
         if found is not None and found.lineno == number and found.offset:
             return max(1, min(found.offset, len(lines[number - 1]) + 1))
         return 1 + len(lines[number - 1]) - len(lines[number - 1].lstrip())

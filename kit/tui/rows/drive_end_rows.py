@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from kit.document.rows import MARGIN, Row, row
-from kit.host.failure import Failure
+from kit.host.failure import Failure, syntax_error
 from kit.plain_text import counted, wrap
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder
@@ -66,14 +65,10 @@ def failed_line(failure: Failure | None, program: Path | None) -> list[Row]:
         return []
     number = f"   {failure.line:>4}  "
     rows = [row((number, "dim"), (line.expandtabs(4), "code"))]
-    try:
-        ast.parse(text)
-    except SyntaxError as error:
-        if error.lineno == failure.line and error.offset:
-            before = line[: error.offset - 1].expandtabs(4)
-            rows.append(row(" " * (len(number) + len(before)), ("^", "bad")))
-    except (ValueError, RecursionError, MemoryError):
-        pass  # a NUL, or nested too deeply: the line alone
+    error = syntax_error(text)
+    if error is not None and error.lineno == failure.line and error.offset:
+        before = line[: error.offset - 1].expandtabs(4)
+        rows.append(row(" " * (len(number) + len(before)), ("^", "bad")))
     return rows
 
 

@@ -13,6 +13,7 @@ from textual.binding import BindingType
 from textual.screen import ModalScreen
 
 from kit.dialogue.actions import ScreenActions
+from kit.host.failure import syntax_error
 from kit.school.lessons.aside import has_easy_editor
 from kit.tui.rows.key_rows import bindings, key_row
 from kit.tui.screens.dialogs import MessageDialog
@@ -55,7 +56,11 @@ class FileEditorScreen(ModalScreen[None]):
             self._editor.show_problem(self._line, self._problem)
 
     def action_save_program(self) -> None:
+        """Nothing runs here that would tell of a text that is no Python."""
         self._editor.save()
+        if self._editor.is_saved and self._editor.program.file.suffix == ".py":
+            error = syntax_error(self._editor.area.text)
+            self._editor.show_problem(error.lineno if error else None, error.msg if error else "")
 
     def action_editor(self) -> None:
         self._editor.keep_draft()

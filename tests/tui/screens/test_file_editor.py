@@ -8,7 +8,7 @@ from textual.pilot import Pilot
 
 from kit.tui.screens.file_editor import FileEditorScreen
 from kit.tui.widgets.program_editor import ProgramFile
-from tests.tui.lesson_stage import seen, stage
+from tests.tui.lesson_stage import seen, stage, text, until
 
 
 def test_what_is_not_saved_when_the_kit_is_left_is_there_the_next_time(tmp_path: Path) -> None:
@@ -27,3 +27,17 @@ def test_what_is_not_saved_when_the_kit_is_left_is_there_the_next_time(tmp_path:
     stage(lambda theme: FileEditorScreen(ProgramFile(file), 1, ""), type_and_end)
     assert file.read_text() == "speed = 1\n"
     stage(lambda theme: FileEditorScreen(ProgramFile(file), 1, ""), look)
+
+
+def test_what_is_saved_and_is_no_python_is_told_with_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("\nspeed = = 1\n")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "speed = = 1")
+        await pilot.press("#", "ctrl+s")
+        await seen(pilot, "line 2: invalid syntax")
+        await pilot.press("down", "home", "#", "ctrl+s")
+        await until(pilot, lambda: "invalid syntax" not in text(pilot), "it is Python now")
+
+    stage(lambda theme: FileEditorScreen(ProgramFile(file), 1, ""), scene)

@@ -156,7 +156,7 @@ class DevicesBoard(Board):
         under = signs[self._cursor][0]
         signs[self._cursor] = ("+" if under in (" ", LIT) else under, "chosen")
         return [
-            *grid_rows(task.grid, signs, scale),
+            *grid_rows(task.grid, signs, scale, lit=lit - set(self._lasers)),
             row(),
             row(
                 (f"  lasers {len(self._lasers)}", "bold"),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from kit.school.game.board import LIT
 from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.challenge_kinds.devices import DevicesTask, fewest_lasers, naive_lasers
 from kit.school.game.challenges import all_challenges
@@ -74,3 +75,16 @@ def test_the_fewest_lasers_can_be_mounted_by_keys(challenge) -> None:
     assert board.judgement().medal is Medal.GOLD
     shown = "".join(text for line in board.rows() for text, _ in line)
     assert all(name.upper() in shown or place in lasers for name, place in challenge.task.places.items())
+
+
+@pytest.mark.parametrize("challenge", DEVICES, ids=lambda each: each.id)
+def test_the_square_of_a_letter_that_is_seen_is_lit_as_well(challenge) -> None:
+    task = challenge.task
+    square = next(each for each in task.floor if task.seen_from((each,)) and each not in task.places.values())
+    rows = ["".join(text for text, _ in each) for each in task.board(f"{square[0]},{square[1]}").rows()]
+    seen = task.seen_from((square,))
+    for name in seen:
+        row, column = next(
+            (row, text.index(name.upper())) for row, text in enumerate(rows) if name.upper() in text
+        )
+        assert rows[row][column + 1] == LIT
