@@ -6,13 +6,15 @@ import os
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 from textual.app import App, ComposeResult
 from textual.binding import BindingType
+from textual.containers import Horizontal
 from textual.screen import ModalScreen
 
 from kit.dialogue.actions import ScreenActions
+from kit.document.rows import MARGIN, Row
 from kit.host.failure import syntax_error
 from kit.school.lessons.aside import has_easy_editor
 from kit.tui.rows.key_rows import bindings, key_row
@@ -22,6 +24,13 @@ from kit.tui.terminal import TerminalDecision
 from kit.tui.widgets.program_editor import ProgramEditor, ProgramFile, ProgramFileError
 from kit.tui.widgets.text_rows import TextRows
 
+Beside = Callable[[int, int, str], list[Row]]
+"""Makes rows of at most so many columns, so many at most, with glyphs of this kind."""
+PROGRAM_COLUMNS: Final = (84, 108)
+"""At least and at most so many for a program's lines with their numbers, where something stands beside them."""
+LEAST_BESIDE, MOST_BESIDE = 30, 90
+"""Columns of what does, with which the program's become more."""
+
 
 class FileEditorScreen(ModalScreen[None]):
     """Edits one file; what is not saved when it is left is kept beside it."""
@@ -29,19 +38,35 @@ class FileEditorScreen(ModalScreen[None]):
     screen_actions = ScreenActions("file editor", ("save_program", "editor"))
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
-    FileEditorScreen > ProgramEditor { width: 1fr; max-width: 100%; height: 1fr; }
-    FileEditorScreen > #keys { dock: bottom; height: 1; }
+    FileEditorScreen ProgramEditor { width: 1fr; max-width: 100%; height: 1fr; }
+    FileEditorScreen #beside { width: auto; height: 1fr; margin: 1 0 0 2; }
+    FileEditorScreen #keys { dock: bottom; height: 1; }
     """
 
-    def __init__(self, program: ProgramFile, line: int, problem: str) -> None:
-        """``line``: where the cursor is put, from 1. ``problem``: what is wrong there; empty: nothing."""
+    def __init__(
+        self, program: ProgramFile, line: int, problem: str, beside: Beside | None = None, glyphs: str = ""
+    ) -> None:
+        """``line``: where the cursor is put, from 1. ``problem``: what is wrong there; empty: nothing. ``beside``: what stands
+        beside the text where there is room, drawn with ``glyphs``."""
         super().__init__()
         self._editor = ProgramEditor(program)
         self._line, self._problem = line, problem
+        self._beside, self._glyphs = beside, glyphs
 
     def compose(self) -> ComposeResult:
-        yield self._editor
+        with Horizontal():
+            yield self._editor
+            yield TextRows(id="beside")
         yield TextRows(id="keys")
+
+    def on_resize(self) -> None:
+        program = max(PROGRAM_COLUMNS[0], min(PROGRAM_COLUMNS[1], self.size.width - MOST_BESIDE))
+        columns = self.size.width - program - MARGIN
+        has_room = self._beside is not None and columns >= LEAST_BESIDE
+        rows = self._beside(columns, self.size.height - 3, self._glyphs) if self._beside and has_room else []
+        shown = self.query_one("#beside", TextRows)
+        shown.display, shown.styles.width = bool(rows), columns
+        shown.show(rows)
 
     def on_mount(self) -> None:
         self.query_one("#keys", TextRows).show(
@@ -93,9 +118,10 @@ def edit_file(
     line: int = 1,
     problem: str = "",
     is_here: bool = False,
+    beside: Beside | None = None,
 ) -> None:
     """Opens a file in the editor that is named or shows its own keys, else in the kit's; ``edited`` is called at its end where
-    the file is another one then. ``line``, ``problem``: as of ``FileEditorScreen``. ``is_here``: in the kit's in any case."""
+    the file is another one then. ``line``, ``problem``, ``beside``: as of ``FileEditorScreen``. ``is_here``: in the kit's in any case."""
     before = _content(file)
 
     def look(_: None = None) -> None:
@@ -108,7 +134,9 @@ def edit_file(
         look()
         return
     try:
-        app.push_screen(FileEditorScreen(ProgramFile(file), line, problem), look)
+        app.push_screen(
+            FileEditorScreen(ProgramFile(file), line, problem, beside, terminal.glyphs.value), look
+        )
     except ProgramFileError as error:
         app.push_screen(MessageDialog("This file cannot be edited here", str(error)))
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
@@ -66,6 +67,7 @@ from kit.tui.screens.level_pictures import (
     ghost_look,
     ghost_marks,
     ghost_paths,
+    level_beside,
 )
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
 from kit.tui.screens.watch import WatchScreen
@@ -547,7 +549,14 @@ class LevelDrive(EditsFile, WatchScreen):
         """Opens the program that drives; once it is another one, it drives again."""
         program = self._own_program
         if program is not None and self._may_edit:
-            edit_file(self.app, program, self._theme.terminal, self.action_restart, is_here=is_here)
+            edit_file(
+                self.app,
+                program,
+                self._theme.terminal,
+                self.action_restart,
+                is_here=is_here,
+                beside=partial(level_beside, self._level, self._driver),
+            )
 
     def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""

@@ -25,7 +25,7 @@ from kit.school.game.race import DriverKind
 from kit.school.game.references import reference_seconds
 from kit.school.lessons.reading import exercise_scene
 from kit.school.lessons.records import Lesson
-from kit.tui.rows.level_card_rows import Company, Rival, best_splits
+from kit.tui.rows.level_card_rows import Company, Rival, best_splits, level_card
 
 ROOM_FOR_THREE: Final = 100
 """Columns from which on three pictures stand beside each other."""
@@ -86,6 +86,14 @@ def picture_rows(picture: Sequence[str]) -> list[Row]:
         row(*(("".join(run), style) for style, run in groupby(line, lambda sign: styles.get(sign, "dim"))))
         for line in picture
     ]
+
+
+def level_beside(level: GameLevel, driver: DriverKind, columns: int, rows: int, glyphs: str) -> list[Row]:
+    """What a level is about, beside a program for it: its map, and its card below that."""
+    picture = picture_rows(picture_of(level, columns, rows // 2, glyphs))
+    room = rows - len(picture) - 1
+    card = level_card(level, driver, reference_seconds(level), (), columns, room, Company())
+    return [*picture, row(), *(each for part in card.values() for each in part)]
 
 
 def task_picture(task: str, columns: int, rows: int, glyphs: str) -> list[Row]:

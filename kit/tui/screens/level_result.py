@@ -7,6 +7,7 @@ import os
 from asyncio import to_thread
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import ClassVar, Final, Literal, TypeAlias
 
@@ -56,7 +57,7 @@ from kit.tui.rows.medal_rows import SMALL, drawn_columns, medal_drawing, medal_s
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.file_editor import EditsFile, edit_file
 from kit.tui.screens.lesson_drive import RecordingScreen
-from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
+from kit.tui.screens.level_pictures import ghost_paths, level_beside, picture_of, scene_of
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView
@@ -296,6 +297,7 @@ class DriveResultScreen(EditsFile, ModalScreen[Wish]):
             line=line,
             problem=problem,
             is_here=is_here,
+            beside=partial(level_beside, self._result.level, self._result.driver),
         )
 
     def action_help(self) -> None:
