@@ -36,7 +36,7 @@ from kit.tui.rows.leaderboard_rows import (
 from kit.tui.rows.level_card_rows import Company, level_card
 from kit.tui.rows.progress_rows import reach_table
 from kit.tui.rows.ruled_title import ruled_title
-from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.level_pictures import picture_of, picture_rows
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.theme import Theme
@@ -46,6 +46,12 @@ from kit.world.problems import WorldError
 
 WIDE: Final = 150
 """Columns from which today's level stands beside the times."""
+NOTES: Final = (
+    ("a time", "the best drive of one player, run again before it is shown"),
+    ("another machine", "driven on another kind of machine, where it is the same but not to the bit"),
+    ("as ... before", "the same drive, which somebody else had first"),
+)
+"""What the board shows."""
 MAP_ROWS: Final = 24
 ROWS_AROUND: Final = 4
 """Of the screen: the heading, an empty row below it and one above the keys, and these."""
@@ -58,7 +64,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
 
     screen_actions = ScreenActions(
         "leaderboard",
-        ("scroll", "join", "back"),
+        ("scroll", "join", "help", "back"),
         ("close",),
         own=(
             letter("join", "j", "join", "add or remove your name and drives"),
@@ -160,6 +166,9 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
     def _keys(self) -> Row:
         labels = {"join": "leave" if self._has_joined else "join"}
         return footer(self.screen_actions, self.size.width, labels=labels, without=self.unavailable_actions)
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("Leaderboard", self.screen_actions, NOTES))
 
     @work(exclusive=True, group="join")
     async def action_join(self) -> None:
