@@ -54,6 +54,7 @@ WIDE: Final = 110
 """Columns from which the matches stand beside the standings."""
 STANDINGS_WIDTH: Final = 68
 GRID_SIGNS: Final = "+ won, - lost, = drawn"
+STOPS: Final = "Esc stops it, and t goes on."
 LEAST_MAP_ROWS: Final = 12
 """Rows without which the levels' maps are not shown."""
 
@@ -235,7 +236,7 @@ class LeagueScreen(RowsScreen[None]):
         below = [row(), *(row("   ", *each) for each in self._maps)] if self._has_own and self._maps else []
         has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
         self._rows("body").show([*tables, *below] if has_room else tables)
-        told = self._note or ("" if self._driving else self._told_of_match)
+        told = self._note or (STOPS if self._is_running else "" if self._driving else self._told_of_match)
         beside = (" " if told and self._driving else "", "dim")
         note = broken(row("  ", (told, "dim"), beside, *self._driving), width)
         self._rows("note").show(note[: self._note_rows])
