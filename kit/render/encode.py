@@ -223,16 +223,21 @@ class BrailleEncoder:
     def _fill_robots(self, glyphs: Grid, fg: Grid, dots: Grid) -> None:
         """Makes robots' bodies solid: characters that are full of them, and their edges beside those. A line of dots, as that of
         a heading, stays one."""
-        cells = np.nonzero((fg == Role.ROBOT) | (fg == Role.ROBOT_2))
-        own = dots[:, :, cells[0], cells[1]] == fg[cells]
+        rows, columns = np.nonzero((fg == Role.ROBOT) | (fg == Role.ROBOT_2))
+        if not len(rows):
+            return
+        own = dots[:, :, rows, columns] == fg[rows, columns]
         counts = own.sum(axis=(0, 1))
-        full = np.zeros((fg.shape[0] + 2, fg.shape[1] + 2), dtype=bool)
-        full[1:-1, 1:-1][cells] = counts >= self._body
-        beside = full[:-2, 1:-1] | full[2:, 1:-1] | full[1:-1, :-2] | full[1:-1, 2:]
-        is_solid = full[1:-1, 1:-1][cells] | (beside[cells] & (counts >= self._edge))
+        # With a margin around them: of a large picture they are a small part.
+        down, across = rows - rows.min() + 1, columns - columns.min() + 1
+        full = np.zeros((down.max() + 2, across.max() + 2), dtype=bool)
+        full[down, across] = counts >= self._body
+        beside = (
+            full[down - 1, across] | full[down + 1, across] | full[down, across - 1] | full[down, across + 1]
+        )
+        is_solid = full[down, across] | (beside & (counts >= self._edge))
         quarters = np.bitwise_or.reduce((own[0::2] | own[1::2]) * self._quarter_bits[..., 0], axis=(0, 1))
-        rows, columns = cells[0][is_solid], cells[1][is_solid]
-        glyphs[rows, columns] = self._blocks[quarters[is_solid]]
+        glyphs[rows[is_solid], columns[is_solid]] = self._blocks[quarters[is_solid]]
 
 
 class HalfBlockEncoder:
