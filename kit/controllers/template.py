@@ -1,8 +1,8 @@
 """My controller.
 
-Save this file and the robot does what it says. It is an ordinary ROS 2 node:
-the same file drives a real robot. Three worked examples stand beside the kit's
-own controllers: forward, circle, avoid.
+Save this file and the robot does what it says. It is an ordinary ROS 2
+node: the same file drives a real robot. Three worked examples stand beside
+the kit's own controllers: forward, circle, avoid.
 """
 
 import rclpy
@@ -22,9 +22,9 @@ class MyController(Node):
     def on_scan(self, scan: LaserScan) -> None:
         """Called ten times a second with what the laser sees.
 
-        scan.ranges holds 91 distances [m], one every 4 degrees, counter-clockwise
-        from straight back: scan.ranges[45] looks straight ahead, [22] to the
-        right, [68] to the left. nan: nothing within range.
+        scan.ranges holds 91 distances [m], one every 4 degrees, from straight
+        back counter-clockwise: scan.ranges[45] looks straight ahead, [22] to
+        the right, [68] to the left. nan: nothing within range.
         """
         command = Twist()
         # command.linear.x = 0.5   # forward [m/s]
@@ -32,7 +32,7 @@ class MyController(Node):
         self.drive.publish(command)
 
     def on_collisions(self, message: Collisions) -> None:
-        """Called when something touches the robot: message.collisions lists what."""
+        """Called when something touches the robot; message.collisions: what."""
 
 
 def main(args: list[str] | None = None) -> None:

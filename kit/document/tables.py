@@ -82,7 +82,7 @@ def _rows_of_table(table: Table, width: int) -> list[Row]:
 
 def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collection[int] = ()) -> list[Row]:
     """A table from which an entry is chosen: its heads, and as many entries as there is room for, the chosen one among them,
-    which stands out up to its first word.
+    whose name, the first cell with a word, stands out over the whole of its column.
 
     ``marked``: the numbers of entries with a mark of their own.
     """
@@ -90,8 +90,9 @@ def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collec
         cells = list(table.rows[chosen])
         for number, column in enumerate(table.columns):
             text = format_cell(cells[number], column)
-            cells[number] = ToneText(text, Tone.CHOSEN)
             if column.style is not CellStyle.NUMBER and any(map(str.isalpha, text)):
+                longest = max(len(format_cell(each[number], column)) for each in table.rows)
+                cells[number] = ToneText(text.ljust(longest), Tone.CHOSEN)
                 break
         table = replace(table, rows=(*table.rows[:chosen], tuple(cells), *table.rows[chosen + 1 :]))
     placed = table_rows(replace(table, is_ruled=False), width - LIST_MARGIN)

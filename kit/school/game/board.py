@@ -35,7 +35,7 @@ Grid: TypeAlias = Sequence[str]
 NO_FIGURES: Final[Mapping[Cell, tuple[str, str]]] = MappingProxyType({})
 LEAST_WITH_FIGURES: Final = 3
 """The scale from which on a cell of a grid has room for a figure."""
-THIRDS: Final = ("bad", "warn", "good")
+THIRDS: Final = ("dim", "", "good")
 """Styles of the lowest, middle and highest third of values."""
 
 
@@ -212,7 +212,7 @@ def by_value(values: Mapping[Cell, float], texts: Mapping[Cell, str]) -> dict[Ce
     """The texts of values, each with a style for the third of their range that the value is in; that of an infinite one is dim.
 
     >>> by_value({(0, 0): 1.0, (0, 1): 5.0, (0, 2): 9.0}, {(0, 0): "1", (0, 1): "5", (0, 2): "9"})
-    {(0, 0): ('1', 'bad'), (0, 1): ('5', 'warn'), (0, 2): ('9', 'good')}
+    {(0, 0): ('1', 'dim'), (0, 1): ('5', ''), (0, 2): ('9', 'good')}
     """
     finite = [value for value in values.values() if math.isfinite(value)]
     low, high = min(finite, default=0.0), max(finite, default=0.0)

@@ -236,7 +236,9 @@ class LeagueScreen(RowsScreen[None]):
         below = [row(), *(row("   ", *each) for each in self._maps)] if self._has_own and self._maps else []
         has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
         self._rows("body").show([*tables, *below] if has_room else tables)
-        told = self._note or (STOPS if self._is_running else "" if self._driving else self._told_of_match)
+        told = self._note or (
+            STOPS if self._is_running and width >= WIDE else "" if self._driving else self._told_of_match
+        )
         beside = (" " if told and self._driving else "", "dim")
         note = broken(row("  ", (told, "dim"), beside, *self._driving), width)
         self._rows("note").show(note[: self._note_rows])

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Final, Literal
+from typing import ClassVar, Final, Literal
 
 from rich.style import Style
 from textual import events
 from textual._text_area_theme import TextAreaTheme
+from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.widget import Widget
 from textual.widgets import Input, TextArea
@@ -50,6 +51,11 @@ class KitInput(OrderedKeys, Input):
 class KitTextArea(OrderedKeys, TextArea):
     """A text area whose cursor does not blink. ``syntax_styles``: of the names that ``highlight`` gives."""
 
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+home", "to_text(False)", show=False),
+        Binding("ctrl+end", "to_text(True)", show=False),
+    ]
+
     def __init__(
         self,
         *,
@@ -75,6 +81,10 @@ class KitTextArea(OrderedKeys, TextArea):
             )
         )
         self.theme = _NAME
+
+    def action_to_text(self, at_end: bool) -> None:
+        """Puts the cursor at the beginning of the text, or at its end."""
+        self.move_cursor(self.document.end if at_end else self.document.start)
 
     async def on_key(self, event: events.Key) -> None:
         """Esc leaves, where Textual would give the focus to whatever comes next."""

@@ -65,6 +65,7 @@ def test_the_private_names_of_the_text_area_are_there() -> None:
     ("language", "lines", "keys", "expected"),
     [
         ("python", "    a = 1", ["enter", "b"], "    a = 1\n    b"),
+        ("python", "a\nb\nc", ["ctrl+home", "x", "ctrl+end", "y"], "xa\nb\ncy"),
         ("python", "    if a:", ["enter", "b"], "    if a:\n        b"),
         ("yaml", "a:", ["enter", "b"], "a:\n  b"),
         ("python", "    if a:", ["enter", "backspace", "backspace", "b"], "    if a:\nb"),
