@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,6 +21,7 @@ from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.race import STUCK_TIME, DriverKind, RaceFinish
+from kit.school.game.starts import SHIFT_M, SHIFT_RAD
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import STAR
@@ -33,6 +35,10 @@ RUN_OF_THE_DAY: Final = "this run counts; what follows is practice"
 REPLACES: Final = "it replaces a best that this kit drives differently"
 FILL: Final = "\u2501"
 """Of bars."""
+OTHER_STARTS: Final = (
+    f"At the others the robot stands up to {SHIFT_M[1] * 100:.0f} cm aside, is turned by up to {math.degrees(SHIFT_RAD[1]):.0f} "
+    "degrees and veers: steer by what it senses."
+)
 MARK: Final = 5
 """Columns of a star before what it is for."""
 
@@ -81,10 +87,13 @@ def how_it_ended(finishes: Sequence[RaceFinish], counts: int, *, was_watched: bo
     first = finish_sentence(finishes[0])
     if said == first:
         return [f"{said} Of {len(finishes)} starts the middle one counts."]
-    return [
+    told = [
         f"{'You watched start 1' if was_watched else 'Start 1'}: {first}",
         f"The middle one counts, start {counts + 1} of {len(finishes)}: {said}",
     ]
+    if finishes[0].reached and not finishes[counts].reached:
+        told.append(OTHER_STARTS)
+    return told
 
 
 def ending(level: GameLevel, finish: RaceFinish, width: int) -> list[Row]:

@@ -183,7 +183,9 @@ def test_a_letter_is_either_a_medal_or_a_ghost() -> None:
 def test_of_a_program_first_the_drive_that_was_watched_is_told_and_then_the_one_that_counts() -> None:
     arrived, late, lost = RaceFinish(True, 6.0, 0), RaceFinish(True, 9.5, 1), RaceFinish(False, 36.0, 0)
     assert how_it_ended([lost], 0) == [finish_sentence(lost)]
-    first, counts = how_it_ended([arrived, lost, late, lost, lost], 3)
+    first, counts, why = how_it_ended([arrived, lost, late, lost, lost], 3)
+    assert "degrees" in why, "how the other starts differ"
+    assert len(how_it_ended([lost, arrived, arrived, late, lost], 3)) == 2
     assert first.endswith(finish_sentence(arrived))
     assert counts.endswith(finish_sentence(lost))
     assert "tart 4 " in counts
