@@ -40,6 +40,8 @@ LIMIT_S: Final = 300.0
 """A machine beside other work takes that long for a check that trains."""
 TOLD_S: Final = 1.0
 """How long one looks at a scene before one presses the key that goes on."""
+SETTLING_READS, SETTLED_S = 10, 0.3
+"""So often a screen is looked at, for so long each time [s], until nothing of it changes."""
 ROW_END: Final = 20
 """Characters by which a row of text is known."""
 MORE: Final = re.compile(r"\.\.\. (\d+) more lines")
@@ -226,12 +228,21 @@ class ScreenNewcomer(Newcomer):
             return self.is_at(step.number) and step.title in self.rows[1] and bool(is_whole)
 
         self.wait(is_painted, f"step {step.number}")
-        pages = [self.user.text]
+        pages = [self._settled_text()]
         while more := MORE.search(pages[-1]):
             self.type("\x1b[6~")
             self.wait(lambda before=more[0]: before not in self.user.text, "the next page")  # type: ignore[misc]  # mypy on lambdas
-            pages.append(self.user.text)
+            pages.append(self._settled_text())
         return "\n".join(pages)
+
+    def _settled_text(self) -> str:
+        """The screen once no more of it comes; where something moves all the time, as it is after a while."""
+        for _ in range(SETTLING_READS):
+            before = self.user.text
+            self.user.pump(SETTLED_S)
+            if self.user.text == before:
+                break
+        return self.user.text
 
     def named_file(self) -> Path:
         heads = (" Edit ", " Saved in ")

@@ -52,7 +52,7 @@ def test_fog_shows_what_the_laser_has_seen_and_no_more(tmp_path: Path) -> None:
     start = level.find_scenario().starts[0]
     ghosts = [
         Ghost(name, 1.0, (np.array([[x, y, 0.0]]),), 0.01)
-        for name, (x, y) in (("reference", level.targets[0]), ("keys", (start.x + 0.3, start.y)))
+        for name, (x, y) in (("reference", level.targets[0]), ("hand", (start.x + 0.3, start.y)))
     ]
 
     async def scene(pilot: Pilot[None]) -> None:
