@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate, groupby
 from types import MappingProxyType
 from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
@@ -24,6 +24,7 @@ WALL: Final = "#"
 START, GOAL = "S", "G"
 FULL, LIT = "█", "░"
 """Fill a cell: a wall, and what is seen."""
+LIT_STYLE: Final = "warn"
 MOVES: Final = {"l": (0, -1), "r": (0, 1), "u": (-1, 0), "d": (1, 0)}
 """The letter of each move, with its change of row and column."""
 ARROWS: Final = {"l": "←", "r": "→", "u": "↑", "d": "↓"}
@@ -182,22 +183,32 @@ def grid_rows(
         for column in range(columns)
     ]
 
-    def shown(row: int, column: int, part: int) -> tuple[str, str]:
+    def shown(row: int, column: int, part: int) -> Iterator[tuple[str, str]]:
         plain = grid[row][column]
         sign, style = signs.get((row, column)) or _plain_square(plain)
         if sign in (FULL, LIT):
-            return sign * 2 * thick[column], style
+            yield sign * 2 * thick[column], style
+            return
         middle, text = (scale - 1) // 2, ""
         if part == middle:
             text = START + sign if plain == START != sign else sign
         elif part == middle + 1 and scale >= LEAST_WITH_FIGURES:
             text, figure_style = figures.get((row, column), ("", ""))
             style = style if style == "chosen" else figure_style
-        fill = LIT if (row, column) in lit else " "
-        return f"{text.center(2 * scale - 1, fill)}{fill}"[: 2 * scale], style
+        placed = f"{text.center(2 * scale - 1)} "[: 2 * scale]
+        if (row, column) in lit and style != "chosen":
+            before = len(placed) - len(placed.lstrip()) if text else 0
+            yield LIT * before, LIT_STYLE
+            yield text, style
+            yield LIT * (2 * scale - before - len(text)), LIT_STYLE
+        else:
+            yield placed, style
 
     return [
-        (("  ", ""), *_join_by_style(shown(row, column, part) for column in range(len(line))))
+        (
+            ("  ", ""),
+            *_join_by_style(each for column in range(len(line)) for each in shown(row, column, part)),
+        )
         for row, line in enumerate(grid)
         for part in range(1 if is_thin(row, rows, line) else scale)
     ]
@@ -261,5 +272,5 @@ def _join_by_style(cells: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Neighbours of one style as one text."""
     return [
         ("".join(text for text, _ in group), style)
-        for style, group in groupby(cells, key=lambda each: each[1])
+        for style, group in groupby((each for each in cells if each[0]), key=lambda each: each[1])
     ]

@@ -17,6 +17,7 @@ from kit.layers.cover import minimum_cover
 from kit.plain_text import counted
 from kit.school.game.board import (
     LIT,
+    LIT_STYLE,
     WALL,
     Board,
     Cell,
@@ -149,7 +150,7 @@ class DevicesBoard(Board):
         lit = {square for laser in self._lasers for square in _squares_seen_from(task, laser)}
         signs: dict[Cell, tuple[str, str]] = {}
         for square in task.floor:
-            signs[square] = (LIT, "warn") if square in lit else (" ", "")
+            signs[square] = (LIT, LIT_STYLE) if square in lit else (" ", "")
         for name, square in task.places.items():
             signs[square] = (name.upper(), "good") if name in seen else (name, "bold")
         signs |= dict.fromkeys(self._lasers, ("*", "warn"))

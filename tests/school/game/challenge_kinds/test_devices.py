@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -81,10 +82,14 @@ def test_the_fewest_lasers_can_be_mounted_by_keys(challenge) -> None:
 def test_the_square_of_a_letter_that_is_seen_is_lit_as_well(challenge) -> None:
     task = challenge.task
     square = next(each for each in task.floor if task.seen_from((each,)) and each not in task.places.values())
-    rows = ["".join(text for text, _ in each) for each in task.board(f"{square[0]},{square[1]}").rows()]
+    board = task.board(f"{square[0]},{square[1]}")
     seen = task.seen_from((square,))
-    for name in seen:
-        row, column = next(
-            (row, text.index(name.upper())) for row, text in enumerate(rows) if name.upper() in text
-        )
-        assert rows[row][column + 1] == LIT
+    lit = set()
+    for parts in board.rows():
+        for (text, style), (after, _) in pairwise([*parts, ("", "")]):
+            if style == "good" and len(text) == 1 and text.isupper() and after.startswith(LIT):
+                lit.add(text.lower())
+    under_cursor = {
+        text.strip().lower() for parts in board.rows() for text, style in parts if style == "chosen"
+    }
+    assert lit == seen - under_cursor
