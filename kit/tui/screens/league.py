@@ -248,8 +248,10 @@ class LeagueScreen(RowsScreen[None]):
 
     @property
     def unavailable_actions(self) -> tuple[str, ...]:
-        """What needs an entrant."""
-        return () if self._entrants else ("choose", "open", "run_matches")
+        """What needs an entrant, and what needs a match of the chosen one: the first may be there before it has been read."""
+        if not self._entrants:
+            return "choose", "open", "run_matches"
+        return () if self._matches else ("open",)
 
     @property
     def _told_of_match(self) -> str:

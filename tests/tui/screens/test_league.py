@@ -40,6 +40,7 @@ def test_an_empty_league_says_how_to_enter_and_a_program_enters_by_a_key(tmp_pat
         await seen(pilot, "Nobody is entered")
         assert "kit league" not in text(pilot), "keys do it here"
         await seen(pilot, "quick (house)")
+        await seen(pilot, "Enter matches")
         await pilot.press("enter")
         await seen(pilot, "Matches of quick (house)")
         await pilot.press("escape")
