@@ -171,6 +171,16 @@ def test_in_a_large_picture_each_name_stands_in_a_box_that_is_not_crossed(
             assert found
 
 
+@every_case("glyphs", ["braille", "ascii"])
+@every_case("boxes", [True, False])
+def test_each_edge_bears_the_layers_that_hold_both_its_ends(boxes: bool, glyphs: GlyphStyle) -> None:
+    layers = [NamedLayer("L7", frozenset({"a", "b"})), NamedLayer("L8", frozenset({"a", "b", "c"}))]
+    case = graph("a-b b-c c-d")
+    lines = draw_graph(case, layers=layers, width=112, height=47, glyphs=glyphs, boxes=boxes)
+    named = [span.text.split() for line in lines for span in line if span.style == "layer"]
+    assert sorted(named) == [["L7", "L8"], ["L8"]]
+
+
 def test_boxes_that_would_touch_are_left_out() -> None:
     assert draw_graph(SLIDES, width=40, height=12, boxes=True) == draw_graph(SLIDES, width=40, height=12)
 

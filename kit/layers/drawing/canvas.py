@@ -30,6 +30,7 @@ _BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 DASH: Final = 4
 """Dots of a dash, and between two, of a line that is struck."""
 BOX_ROWS: Final = 4
+LINE_STYLES: Final = ("space", "struck", "beam", "edge", "group edge", "wrong")
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +76,18 @@ class TextCanvas:
 
     def label(self, middle: tuple[float, float], text: str, style: DrawingStyle) -> None:
         """Text over whatever is there, moved so that it fits."""
+        for cell, letter in zip(self._label_cells(middle, text), text, strict=False):
+            self._letters[cell], self._styles[cell] = letter, style
+
+    def is_free_of_words(self, middle: tuple[float, float], text: str) -> bool:
+        """Whether a label would cover nothing but lines."""
+        return all(self._styles.get(cell, "space") in LINE_STYLES for cell in self._label_cells(middle, text))
+
+    def _label_cells(self, middle: tuple[float, float], text: str) -> list[tuple[int, int]]:
         row = min(max(round(middle[1]), 0), self._height - 1)
-        shown = text[: self._width]
-        first = min(max(round(middle[0] - (len(shown) - 1) / 2), 0), self._width - len(shown))
-        for i, letter in enumerate(shown):
-            self._letters[first + i, row] = letter
-            self._styles[first + i, row] = style
+        width = min(len(text), self._width)
+        first = min(max(round(middle[0] - (width - 1) / 2), 0), self._width - width)
+        return [(first + i, row) for i in range(width)]
 
     def box(self, box: EntityBox) -> None:
         """A frame over whatever is there: thick around the group, double around a map."""

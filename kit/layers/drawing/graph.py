@@ -8,12 +8,15 @@ from functools import lru_cache
 from itertools import combinations
 from typing import TypeAlias
 
+from kit.layers.assignment import NamedLayer
 from kit.layers.drawing.canvas import BOX_ROWS, EntityBox, TextCanvas
 from kit.layers.drawing.spans import STYLE_RANK, DrawingLine, DrawingStyle, GlyphStyle
 from kit.layers.requirements import ContactRequirement, LayerCase
 
 MAX_ENTITIES_IN_PICTURE = 16
 """With more entities than this, lines cross too often to follow: draw the matrix."""
+NAME_PLACES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.27, 0.73)
+"""Where along an edge its layers may be named, as shares of its length, the best first."""
 EntityLabel: TypeAlias = tuple[str, DrawingStyle]
 
 
@@ -25,6 +28,7 @@ def draw_graph(
     laser: str | None = None,
     wrong: Collection[ContactRequirement] = (),
     cursor: str | None = None,
+    layers: Sequence[NamedLayer] = (),
     width: int = 80,
     height: int = 17,
     glyphs: GlyphStyle = "braille",
@@ -35,6 +39,7 @@ def draw_graph(
     Edges are lines; a struck one is faint dashes; one inside the ``group`` is drawn thick, and the names of the
     group stand in ``[ ]``. Maps stand between ``# #``. A ``laser``, in ``< >``, sends a dotted beam to everything
     it must see. ``wrong``: pairs that collide and must not, as lines of their own. ``cursor``: a name that stands out.
+    ``layers``: an edge bears the names of those that hold both its ends, where they have room.
     ``boxes``: where no two would touch, each name stands in a box that says what it is.
     """
     names = [*_reduce_crossings(case), *([laser] if laser else [])]
@@ -44,6 +49,7 @@ def draw_graph(
     labels = {name: _entity_label(case, name, group) for name in names}
     if boxes and (placed := _place_boxes(case, labels, laser, cursor, width, height)):
         _draw_boxed_graph(canvas, case, placed, lines, laser)
+        _name_edges(canvas, layers, edges, {name: box.middle for name, box in placed.items()})
         return canvas.lines()
     positions = dict(zip(names, _ellipse_points(len(case.names), width, height), strict=False))
     if laser:
@@ -54,6 +60,7 @@ def draw_graph(
         canvas.line(positions[edge.a], positions[edge.b], style)
     for name, (label, style) in labels.items():
         canvas.label(positions[name], label, "cursor" if name == cursor else style)
+    _name_edges(canvas, layers, edges, positions)
     return canvas.lines()
 
 
@@ -103,6 +110,23 @@ def _draw_boxed_graph(
         canvas.box(box)
     for name in seen:
         canvas.arrow(placed[laser or ""], placed[name])
+
+
+def _name_edges(
+    canvas: TextCanvas,
+    layers: Sequence[NamedLayer],
+    edges: Collection[ContactRequirement],
+    positions: Mapping[str, tuple[float, float]],
+) -> None:
+    """Writes at each edge which layers hold both its ends, as near its middle as no other word stands."""
+    for edge in edges:
+        held = " ".join(layer.name for layer in layers if layer.members.issuperset((edge.a, edge.b)))
+        (x0, y0), (x1, y1) = positions[edge.a], positions[edge.b]
+        for share in NAME_PLACES if held else ():
+            middle = x0 + (x1 - x0) * share, y0 + (y1 - y0) * share
+            if canvas.is_free_of_words(middle, f" {held} "):
+                canvas.label(middle, f" {held} ", "layer")
+                break
 
 
 def _edge_style(

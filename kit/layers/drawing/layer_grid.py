@@ -33,7 +33,7 @@ def draw_layer_grid(
         (
             DrawingSpan(head, "text"),
             *(
-                DrawingSpan(f"{layer.name:<{step}}", "group" if layer.name == newest else "text")
+                DrawingSpan(f"{layer.name:<{step}}", "group" if layer.name == newest else "layer")
                 for layer in layers
             ),
         )

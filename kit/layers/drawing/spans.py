@@ -16,6 +16,7 @@ DrawingStyle = Literal[
     "group edge",
     "wrong",
     "beam",
+    "layer",
     "map",
     "body",
     "group",
@@ -38,7 +39,7 @@ DrawingLine = tuple[DrawingSpan, ...]
 
 
 _STYLE_ORDER: Final[tuple[DrawingStyle, ...]] = (
-    "space", "struck", "beam", "edge", "group edge", "wrong", "text", "map", "body", "laser", "group",
+    "space", "struck", "beam", "edge", "group edge", "wrong", "layer", "text", "map", "body", "laser", "group",
     "cursor",
 )  # fmt: skip
 """Where two items meet in one character, the later style is shown."""
@@ -54,6 +55,7 @@ _LOOKS: Final = MappingProxyType(
         "group": "good",
         "wrong": "bad",
         "beam": "warn",
+        "layer": "title",
         "laser": "warn",
         "cursor": "key",
     }

@@ -31,6 +31,7 @@ def picture(case: LayerCase, page: TourPage, width: int, height: int, glyphs: Gl
         struck=page.covered_edges,
         group=page.group,
         laser=page.laser,
+        layers=page.layers,
         width=max(1, width),
         height=max(1, height),
         glyphs=glyphs,
@@ -43,4 +44,4 @@ def layer_grid(case: LayerCase, page: TourPage, width: int, glyphs: GlyphStyle) 
     """The layers that a page knows of, under a title; always as many rows for one case, or none for want of room."""
     newest = page.layers[-1].name if page.group and page.layers else None
     lines = draw_layer_grid(case, page.layers, page.watches, newest=newest, width=width, glyphs=glyphs)
-    return [row(("Layers", "bold")), *drawn(lines)] if lines else []
+    return [row(("Layers", "title")), *drawn(lines)] if lines else []

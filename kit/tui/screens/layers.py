@@ -42,6 +42,7 @@ PARTS: Final[tuple[TourPart, ...]] = ("case", "method", "fewest", "proof")
 
 SIGNS: Final = (
     ("[ name ]", "in the layer of this step; its edges are thick"),
+    ("C1 on an edge", "the layer that holds both its ends"),
     ("a dotted edge", "struck: some layer holds both its ends already"),
     ("# name #", "a map"),
     ("< name >", "a laser, with beams to all it must see"),
