@@ -81,7 +81,7 @@ class Painter:
         for number, robot in enumerate(scene.robots):
             canvas.draw_robot(robot, ROBOT_ROLES[number % len(ROBOT_ROLES)])
         frame = self.encoder.encode(canvas.grid, coarse=self._is_coarse(scene, camera))
-        sprites = SpriteLayer(frame, camera, self.encoder.symbols, scene.walls, self._wall_cells)
+        sprites = SpriteLayer(frame, camera, self.encoder.symbols, scene.walls, self._wall_cells, self.shaded)
         sprites.draw_scene(scene)
         if self.shaded:
             rays = scene.beams if scene.shows_beams else scene.beams[:0]

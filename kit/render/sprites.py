@@ -23,6 +23,9 @@ WEAK_FIELD = 0.02
 STRONG_FIELD = 0.5
 """One stronger than this is drawn with heavier arrows."""
 
+ROBOT_BLOCKS = "█▙▛▜▟"
+"""Blocks of a solid robot that become the background of a character on them: else it would look like a hole."""
+
 SpriteCell = tuple[int, int]
 """Row and column."""
 
@@ -37,9 +40,17 @@ class SpriteLayer:
     """Puts characters on one frame."""
 
     def __init__(
-        self, frame: Frame, camera: Camera, symbols: GlyphSet, walls: FloatArray, wall_cells: BoolArray
+        self,
+        frame: Frame,
+        camera: Camera,
+        symbols: GlyphSet,
+        walls: FloatArray,
+        wall_cells: BoolArray,
+        shaded: bool = False,
     ) -> None:
-        """``walls``: ``x1 y1 x2 y2`` [m]. ``wall_cells``: the cells in which there is some."""
+        """``walls``: ``x1 y1 x2 y2`` [m]. ``wall_cells``: the cells in which there is some. ``shaded``: the floor has a colour,
+        in which characters on a solid robot are written."""
+        self._shaded = shaded
         self._frame = frame
         self._camera = camera
         self._symbols = symbols
@@ -165,9 +176,15 @@ class SpriteLayer:
         row, first = cell
         for column, glyph in enumerate(text, first):
             if 0 <= column < columns and self._frame.fg[row, column] <= over:
+                below = Role(self._frame.fg[row, column])
+                is_on_robot = (
+                    self._shaded
+                    and below in ROBOT_ROLES
+                    and chr(self._frame.glyphs[row, column]) in ROBOT_BLOCKS
+                )
                 self._frame.glyphs[row, column] = ord(glyph)
-                self._frame.fg[row, column] = role
-                self._frame.bg[row, column] = Role.EMPTY
+                self._frame.fg[row, column] = Role.FLOOR if is_on_robot else role
+                self._frame.bg[row, column] = below if is_on_robot else Role.EMPTY
 
 
 def _arrow_glyph(glyphs: str, angle: float) -> str:

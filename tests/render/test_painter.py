@@ -108,6 +108,15 @@ def test_a_large_robot_has_its_shape_and_its_nose(encoder: Encoder) -> None:
     assert tip[0] in (11, 12)
 
 
+def test_characters_on_a_solid_robot_have_its_colour_behind_them() -> None:
+    scene = Scene(bodies=(robot(Pose(0, 0, 0)), robot(Pose(0, 0.3, 0))))
+    frame = Painter(BrailleEncoder(layers=True), shaded=True).paint(scene, Camera(0.0, 0.0, 0.04, 60, 60))
+    for arrows, role in zip(BrailleEncoder.symbols.robot_arrows, (Role.ROBOT, Role.ROBOT_2), strict=True):
+        assert set(frame.bg[frame.glyphs == ord(arrows[0])].tolist()) == {role}
+    alone = Painter(BrailleEncoder(layers=True), shaded=True).paint(scene, Camera(0.0, 0.0, 0.2, 20, 20))
+    assert not set(alone.bg.ravel().tolist()) & {Role.ROBOT, Role.ROBOT_2}, "an arrow is no robot's body"
+
+
 @every_encoder
 @every_case("eighth", range(8))
 def test_a_small_robot_is_an_arrow_with_a_nose_ahead(encoder: Encoder, eighth: int) -> None:
