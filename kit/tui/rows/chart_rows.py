@@ -31,18 +31,21 @@ def laser_chart(laser: Sequence[float], width: int, rows: int = CHART_ROWS) -> l
     return _bar_rows(heights, max(heights, default=0.0) or 1.0, rows, "m")
 
 
-def time_chart(values: Sequence[float], width: int, least: float, rows: int = CHART_ROWS) -> list[Row]:
-    """The newest values on the right, from the middle row up and down where some are negative."""
+def time_chart(
+    values: Sequence[float], width: int, least: float, window: int, rows: int = CHART_ROWS
+) -> list[Row]:
+    """The newest ``window`` values, the last of them on the right, from the middle row up and down where some are negative. Of
+    several values in one column the largest is shown."""
     room = width - CHART_LABEL
-    shown = list(values)[-room * 2 :]
-    # Two samples to a character where there are many.
-    paired = [max(shown[i : i + 2], key=abs) for i in range(0, len(shown), 2)] if len(shown) > room else shown
-    paired = [0.0] * (room - len(paired)) + paired[-room:]
-    top = _top(max((abs(value) for value in paired), default=0.0), least)
-    if min(paired, default=0.0) > -0.05 * top:
-        return _bar_rows(paired, top, rows, "")
+    newest = list(values)[-window:]
+    shown = [0.0] * (window - len(newest)) + newest
+    starts = [bar * window // room for bar in range(room + 1)]
+    bars = [max(shown[start : max(end, start + 1)], key=abs) for start, end in pairwise(starts)]
+    top = _top(max((abs(value) for value in bars), default=0.0), least)
+    if min(bars, default=0.0) > -0.05 * top:
+        return _bar_rows(bars, top, rows, "")
     middle = rows // 2
-    return _two_sided(paired, top / middle, middle, rows - middle - 1)
+    return _two_sided(bars, top / middle, middle, rows - middle - 1)
 
 
 def _top(largest: float, least: float) -> float:

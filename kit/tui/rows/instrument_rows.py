@@ -43,9 +43,11 @@ HIGHEST_CHART: Final = 10
 MESSAGES: Final = "messages"
 """The title of the newest messages."""
 MOST_MESSAGES: Final = 8
-HISTORY_S: Final = 60.0
+WINDOWS_S: Final = (10.0, 20.0, 60.0)
+"""Seconds of the simulation that the charts of the past cover: the fewest that hold all of it, else the last minute."""
 SAMPLE_S: Final = 0.2
-"""Seconds of the simulation that the charts of the past cover, and between two of their points."""
+"""Seconds between two of their points."""
+MOST_SAMPLES: Final = round(WINDOWS_S[-1] / SAMPLE_S)
 
 
 @dataclass(frozen=True)
@@ -104,8 +106,8 @@ def panel_widths(columns: int, rows: int, shape: float, wanted: int = 0) -> Pane
 class SpeedHistory:
     """The robot's speeds of the last minute."""
 
-    forward_speeds: deque[float] = field(default_factory=lambda: deque(maxlen=round(HISTORY_S / SAMPLE_S)))
-    turning: deque[float] = field(default_factory=lambda: deque(maxlen=round(HISTORY_S / SAMPLE_S)))
+    forward_speeds: deque[float] = field(default_factory=lambda: deque(maxlen=MOST_SAMPLES))
+    turning: deque[float] = field(default_factory=lambda: deque(maxlen=MOST_SAMPLES))
     _last: float = -math.inf
 
     def add(self, view: View) -> None:
@@ -237,16 +239,19 @@ def _worth(block: Sequence[Row]) -> int:
 
 
 def _charts(view: View, history: SpeedHistory, width: int, rows: int) -> Iterator[list[Row]]:
-    """What the laser sees, and the speeds of the last minute."""
+    """What the laser sees, and the speeds of all the time that has passed, or of the last minute."""
     if view.nearest:  # it has a laser, whose first scan is to come or sees nothing
         ranges = view.laser.tolist()
         title = ruled_title("laser", width, "distance to the left, ahead, to the right")
         yield [title, *laser_chart(ranges, width, rows)]
     if history.forward_speeds:
-        title = ruled_title("speed", width, f"last {HISTORY_S:.0f} s, m/s")
-        yield [title, *time_chart(history.forward_speeds, width, 0.1, rows)]
+        known_s = len(history.forward_speeds) * SAMPLE_S
+        window_s = next((each for each in WINDOWS_S if each >= known_s), WINDOWS_S[-1])
+        window = round(window_s / SAMPLE_S)
+        title = ruled_title("speed", width, f"last {window_s:.0f} s, m/s")
+        yield [title, *time_chart(history.forward_speeds, width, 0.1, window, rows)]
         title = ruled_title("turning", width, "rad/s, up is left")
-        yield [title, *time_chart(history.turning, width, 0.5, rows)]
+        yield [title, *time_chart(history.turning, width, 0.5, window, rows)]
 
 
 def _title_numbers(rows: Sequence[Row]) -> list[int]:

@@ -212,15 +212,38 @@ def test_a_minute_is_charted_and_a_restart_begins_again(views: list[View]) -> No
     assert len(history.forward_speeds) == 1
 
 
+@every_case("window", [20, 50, 300])
+def test_a_chart_over_time_covers_its_window(window: int) -> None:
+    for first in (0, window // 2, window - 1):
+        values = [9.0, *([0.0] * first), 1.0, *([0.0] * (window - first - 1))]
+        (*_, lowest) = texts(time_chart(values, 46, 1.0, window, 1))
+        seen = [number for number, glyph in enumerate(lowest[6:]) if glyph == "█"]
+        assert seen, "a value of the window"
+        assert seen[0] == pytest.approx(first * 40 / window, abs=1)
+
+
+def test_the_charts_cover_all_of_a_short_drive(views: list[View]) -> None:
+    history, told = SpeedHistory(), []
+    for seconds in range(0, 90, 5):
+        history.add(replace(views[-1], time_s=float(seconds)))
+        told += [line for line in texts(with_charts(views[-1], history, (), (46, 31))) if "last" in line]
+    spans = [int(line.split("last ")[1].split(" s")[0]) for line in told]
+    assert spans == sorted(spans)
+    assert all(
+        span >= min(seconds, 60) and span <= max(20, 3 * seconds)
+        for span, seconds in zip(spans, range(0, 90, 5), strict=True)
+    )
+
+
 @every_case("values", [[0.0], [0.1, 0.5], [-0.5, 0.5], [-1e-9] * 500, [0.3] * 500])
 def test_a_chart_over_time_has_its_size(values: list[float]) -> None:
-    rows = texts(time_chart(values, 46, 0.1))
+    rows = texts(time_chart(values, 46, 0.1, 300))
     assert len(rows) == CHART_ROWS
     assert {len(line) for line in rows} == {46}
 
 
 def test_what_turns_right_goes_down() -> None:
-    rows = texts(time_chart([-1.0] * 10, 46, 0.5))
+    rows = texts(time_chart([-1.0] * 10, 46, 0.5, 20))
     assert "█" in rows[-1]
     assert "█" not in rows[0]
 
