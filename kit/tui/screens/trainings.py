@@ -86,8 +86,9 @@ class TrainingsScreen(RowsScreen[None]):
     TrainingsScreen TaskPreview { display: none; width: 1fr; }
     TrainingsScreen.-empty #left { width: 1fr; }
     TrainingsScreen.-empty #preview { display: none; }
+    TrainingsScreen.-empty.-roomy #left { width: 76; }
     TrainingsScreen.-empty.-wide #left { width: 118; }
-    TrainingsScreen.-empty.-wide TaskPreview { display: block; }
+    TrainingsScreen.-empty.-roomy TaskPreview, TrainingsScreen.-empty.-wide TaskPreview { display: block; }
     """
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy"), (160, "-wide")]  # noqa: RUF012 - Textual's own
 
@@ -106,7 +107,7 @@ class TrainingsScreen(RowsScreen[None]):
         self._preview = TrainingPreview(theme, id="preview")
         self._detailed: tuple[RunStatus | None, Size] = (None, Size())
         """What is told below the list: of what, and in how much room."""
-        self._first_task = TaskPreview(theme, runs)
+        self._first_task = TaskPreview(theme, runs, is_overview=True)
         """What a first training would learn, unless another task is chosen."""
         self.add_class("-empty")
 

@@ -43,8 +43,10 @@ class TaskPreview(Vertical):
     TaskPreview TextRows { height: auto; }
     """
 
-    def __init__(self, theme: Theme, runs: Path) -> None:
+    def __init__(self, theme: Theme, runs: Path, *, is_overview: bool = False) -> None:
+        """``is_overview``: what a step earns is left out where all of it has no room, and the map has that room."""
         super().__init__()
+        self._is_overview = is_overview
         self._runs = runs
         self._told: TellsConfig | None = None
         self._world = WorldView(lambda: theme.encoder, theme.palette)
@@ -82,8 +84,11 @@ class TaskPreview(Vertical):
         self._show_text()
 
     def _show_text(self) -> None:
-        rows = [row(), *rows_of(self._blocks, Page(max(20, self.size.width - 2 * MARGIN), MARGIN))]
-        self._text.show_all(rows[: max(0, self.size.height - LEAST_MAP_ROWS)])
+        page, room = Page(max(20, self.size.width - 2 * MARGIN), MARGIN), self.size.height - LEAST_MAP_ROWS
+        rows = [row(), *rows_of(self._blocks, page)]
+        if self._is_overview and len(rows) > room:
+            rows = [row(), *rows_of(self._blocks[:1], page)]
+        self._text.show_all(rows[: max(0, room)])
 
 
 def _task_told(runs: Path, config: RunConfig) -> tuple[Scene, Sequence[Block]]:

@@ -353,3 +353,18 @@ def test_a_narrow_form_has_the_form_alone(tmp_path: Path) -> None:
         assert "is a start" not in text(pilot)
 
     stage(lambda theme: NewTrainingScreen(theme, tmp_path), scene)
+
+
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)])
+def test_the_map_of_the_chosen_task_stands_beside_the_first_list(
+    tmp_path: Path, size: tuple[int, int]
+) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "◎")
+        before = [line[76:] for line in rows(pilot)]
+        assert any("◎" in line for line in before), "beside the list"
+        await pilot.press("down")
+        await until(pilot, lambda: [line[76:] for line in rows(pilot)] != before, "another task's map")
+        assert not any(line.rstrip().endswith("...") for line in rows(pilot))
+
+    stage(lambda theme: TrainingsScreen(theme, tmp_path / "runs"), scene, size=size)
