@@ -103,6 +103,8 @@ class Picture:
     indent: int = 2
     tone: Tone = Tone.PLAIN
     is_tight: bool = False
+    is_diagram: bool = False
+    """Whether its lines and arrows of ``-``, ``|``, ``+`` and ``>`` are joined where it is looked at."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ from kit.document.blocks import (
     Tone,
 )
 from kit.document.code_lines import broken_code
-from kit.document.glyphs import BLOCK_GLYPHS, WIDTH, PlotGlyphs
+from kit.document.glyphs import BLOCK_GLYPHS, WIDTH, PlotGlyphs, diagram_lines
 from kit.document.markup import TextStyle, parse_markup, wrap_blocks
 from kit.document.rows import Row, StyledText, entry_rows, row, row_text
 from kit.document.tables import table_rows
@@ -167,7 +167,8 @@ def _block_rows(block: Block, page: Page) -> list[Row]:
             ]
         case Picture():
             indent = " " * block.indent
-            return [row((f"{indent}{line}".rstrip(), block.tone)) for line in block.lines]
+            lines = diagram_lines(block.lines) if block.is_diagram and not page.is_heard else block.lines
+            return [row((f"{indent}{line}".rstrip(), block.tone)) for line in lines]
         case Table():
             return list(_table_rows(block, page))
         case Caution():

@@ -97,6 +97,7 @@ VISITS: Final = {
     "fields": ScreenVisit(("fields", "show", "pair_turn"), (), 4.0),
     "lessons": ScreenVisit(keys=("2",)),
     "lesson": ScreenVisit(("lesson", "1"), ("n",)),
+    "read": ScreenVisit(("lesson", "A1"), ("l", "Robot learning\r")),
     "exercise": ScreenVisit(("lesson", "C1"), ("l", "circle\r")),
     "levels": ScreenVisit(("game",), seconds=6.0),
     "level": ScreenVisit(("game", "play", "first-drive"), ("w",), 3.0),

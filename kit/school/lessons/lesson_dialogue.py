@@ -302,7 +302,7 @@ class LessonDialogue(Dialogue):
             return ()
         blocks: list[Block] = [Text(f"Goal: {self.step.goal}", is_tight=True)]
         if self.step.picture:
-            blocks.append(Picture(tuple(self.step.picture.splitlines())))
+            blocks.append(Picture(tuple(self.step.picture.splitlines()), is_diagram=True))
         if self.step.graph is not None:
             blocks.append(Picture(tuple(graph_rows(self.step.graph, at_end=not self.step.options)), indent=0))
         return blocks

@@ -16,6 +16,7 @@ from textual.containers import Container
 from kit.dialogue.dialogue import Dialogue, Panel
 from kit.dialogue.effects import Remark
 from kit.document.blocks import Block, Marked, Picture, Text, Tone, ToneText, labelled_table
+from kit.document.glyphs import diagram_lines
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, row, row_width, text_width
 from kit.inspection.sockets import sockets_folder
@@ -244,7 +245,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         drawn = [] if hides_work else self._work_picture(self._width - 2, is_roomy=is_roomy)
         asked = dialogue.prediction_blocks()
         question = [row(), *self._placed_rows(asked)] if asked else []
-        shown = () if hides_work else tuple(drawn or step.picture.splitlines())
+        shown = () if hides_work else tuple(drawn or diagram_lines(step.picture.splitlines()))
         room = self.room.height - ROWS_AROUND - len(file) - len(status)
         most_words = self._said_row + answer
         if is_roomy and most_words + len(question) + len(shown) <= room:
@@ -254,7 +255,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         has_work = work is not None and not work.by_hand and (is_roomy or not self._is_editing)
         lines = work.edited_lines() if work is not None and has_work else ()
         moves = self.stage.scene if dialogue.has_scene and (is_roomy or not drawn) else None
-        is_backdrop = moves is None and is_roomy and bool(lines) and self._opens_backdrop()
+        is_backdrop = moves is None and is_roomy and self._opens_backdrop(has_file=bool(lines))
         content = LessonContent(
             words,
             question,
@@ -280,10 +281,14 @@ class LessonScreen(DialogueScreen, DriveScreen):
         dialogue.is_code_cut = has_work and self._page.is_file_cut
         self._show_keys()
 
-    def _opens_backdrop(self) -> bool:
-        """Opens the world in which the exercise's program will drive, where there is one; says whether."""
-        work = self.dialogue.work
-        scene = None if work is None else work.scene
+    def _opens_backdrop(self, *, has_file: bool) -> bool:
+        """Opens a world that stands still beside the words, where there is one; says whether: the one in which the exercise's
+        program will drive, or for a step without anything that moves the one that was driven in last."""
+        work, step = self.dialogue.work, self.dialogue.step
+        scene = work.scene if has_file and work is not None else None
+        if step.exercise is None and step.graph is None and not self.dialogue.has_ended:
+            before = self.dialogue.session.lesson.steps[: step.number - 1]
+            scene = next((each.scene for each in reversed(before) if each.scene is not None), None)
         if scene is not None and self.stage.world.scene != scene:
             self.stage.world.open(scene, still=True)
         return scene is not None
@@ -319,7 +324,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
         before = self.dialogue.session.lesson.steps[: here.number - 1]
         read = next((each for each in reversed(before) if each.kind is StepKind.EXPLAIN), None)
         if read is not None:
-            picture: list[Block] = [Picture(tuple(read.picture.splitlines()))] if read.picture else []
+            picture: list[Block] = (
+                [Picture(tuple(read.picture.splitlines()), is_diagram=True)] if read.picture else []
+            )
             told = (*picture, Marked(self.dialogue.with_paths(read.text)))
             panels.append(Panel(f"step {read.number}: {read.title}", told))
         return panels
@@ -430,9 +437,10 @@ class LessonScreen(DialogueScreen, DriveScreen):
         if (columns := self._file_columns) is not None:
             return columns.words
         dialogue, usual = self.dialogue, words_beside(width)
-        if dialogue.has_scene or dialogue.step.exercise is not None or dialogue.step.picture:
+        if dialogue.has_scene or dialogue.step.exercise is not None:
             return usual
-        return max(usual, min(self._code_columns(width), width - LEAST_ASIDE))
+        drawn = max(map(len, dialogue.step.picture.splitlines()), default=0) + 2 * MARGIN + 1
+        return max(usual, min(max(self._code_columns(width), drawn), width - LEAST_ASIDE))
 
     @property
     def _file_columns(self) -> FileColumns | None:
