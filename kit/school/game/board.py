@@ -139,6 +139,20 @@ def cells_of_moves(grid: Grid, cell: Cell, moves: str) -> list[Cell]:
     return list(accumulate(moves, lambda here, move: step(grid, here, move), initial=cell))[1:]
 
 
+def way_signs(grid: Grid, start: Cell, moves: str) -> dict[Cell, tuple[str, str]]:
+    """The way of these moves as signs with their style: on each square that was left, an arrow for the last move from it.
+
+    >>> way_signs(["#####", "#S.G#", "#####"], (1, 1), "rrll")
+    {(1, 1): ('→', 'dim'), (1, 2): ('←', 'dim'), (1, 3): ('←', 'dim')}
+    """
+    cells = [start, *cells_of_moves(grid, start, moves)]
+    return {
+        here: (ARROWS[move], "dim")
+        for move, here, there in zip(moves, cells, cells[1:], strict=False)
+        if here != there
+    }
+
+
 def distances_to(grid: Grid, goal: Cell) -> dict[Cell, int]:
     """The number of moves to a cell from every cell that leads there."""
     reached = reached_from(goal, lambda cell: ((move, step(grid, cell, move)) for move in MOVES))

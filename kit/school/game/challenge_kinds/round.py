@@ -20,6 +20,7 @@ from kit.school.game.board import (
     shortest_way,
     told_rows,
     visit_rows,
+    way_signs,
 )
 from kit.school.game.challenge import AnswerSubmission
 from kit.school.game.judgement import Judgement, judge_count
@@ -116,10 +117,11 @@ class RoundBoard(MovesBoard):
     def rows(self, scale: int = 1) -> list[Row]:
         task = self._round
         cell, left = trace_moves(task, self.moves)
-        signs = {
+        places = {
             place: (name, "bold") if name in left else (name.upper(), "good")
             for name, place in task.places.items()
         }
+        signs = {**way_signs(task.grid, find_cell(task.grid, "S"), self.moves), **places}
         signs[cell] = ("@", "chosen")
         visited = len(task.places) - len(left)
         return [
