@@ -29,6 +29,7 @@ _SIDES: Final = ((-1, 0, "-+<["), (1, 0, "-+>["), (0, -1, "|+^"), (0, 1, "|+v"))
 """Left, right, above and below a corner: columns and rows away, and what a line there looks like."""
 _JOINTS: Final = dict(zip((1, 2, 3, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15), "───┘└┴┐┌┬│┤├┼", strict=True))
 """By the sides to which a line goes on: 1 left, 2 right, 4 above, 8 below."""
+_HEADS: Final = dict(zip("<>^v", "◀▶▲▼", strict=True))
 
 
 def diagram_lines(lines: Sequence[str]) -> list[str]:
@@ -58,14 +59,14 @@ def diagram_lines(lines: Sequence[str]) -> list[str]:
                 (at(column + x, number + y) in signs) << place for place, (x, y, signs) in enumerate(_SIDES)
             )
             return _JOINTS.get(bits, sign)
-        is_alone = not (left.isalnum() or right.isalnum())
-        heads = {
-            "<": right == "-",
-            ">": left == "-",
-            "^": below in "|+" and is_alone,
-            "v": above in "|+" and is_alone,
-        }
-        return dict(zip("<>^v", "◀▶▲▼", strict=True))[sign] if heads.get(sign) else sign
+        is_alone = not (left.isalnum() or right.isalnum())  # a "v" may be a letter of a word
+        is_head = (
+            (sign == "<" and right == "-")
+            or (sign == ">" and left == "-")
+            or (sign == "^" and below in "|+" and is_alone)
+            or (sign == "v" and above in "|+" and is_alone)
+        )
+        return _HEADS[sign] if is_head else sign
 
     return [
         "".join(drawn(column, number) for column in range(len(line))) for number, line in enumerate(lines)

@@ -30,7 +30,6 @@ _BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 DASH: Final = 4
 """Dots of a dash, and between two, of a line that is struck."""
 BOX_ROWS: Final = 4
-LINE_STYLES: Final = ("space", "struck", "beam", "edge", "group edge", "wrong")
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +80,8 @@ class TextCanvas:
 
     def is_free_of_words(self, middle: tuple[float, float], text: str) -> bool:
         """Whether a label would cover nothing but lines."""
-        return all(self._styles.get(cell, "space") in LINE_STYLES for cell in self._label_cells(middle, text))
+        styles = (self._styles.get(cell, "space") for cell in self._label_cells(middle, text))
+        return all(STYLE_RANK[style] < STYLE_RANK["layer"] for style in styles)
 
     def _label_cells(self, middle: tuple[float, float], text: str) -> list[tuple[int, int]]:
         row = min(max(round(middle[1]), 0), self._height - 1)

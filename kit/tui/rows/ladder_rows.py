@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import replace
 from itertools import groupby
 from typing import Final
@@ -68,6 +69,21 @@ def ladder_bar(
     return tuple(
         ("".join(sign for sign, _ in run), style) for style, run in groupby(shown, key=lambda each: each[1])
     )
+
+
+def drivers_by_ladder(timed: Collection[DriverKind]) -> list[tuple[DriverKind, ...]]:
+    """The drivers, those together that have the same ladder while none of them has a time on it. ``timed``: those that have one.
+
+    >>> drivers_by_ladder([DriverKind.HAND])[1] == (DriverKind.PROGRAM, DriverKind.AGENT)
+    True
+    >>> len(drivers_by_ladder([DriverKind.AGENT]))
+    3
+    """
+    return [
+        part
+        for drivers in LADDERS
+        for part in ([(each,) for each in drivers] if set(drivers) & set(timed) else [drivers])
+    ]
 
 
 def ladder_letters() -> Row:

@@ -46,7 +46,7 @@ from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.ladder_rows import LADDERS, ladder_letters, rung_rows
+from kit.tui.rows.ladder_rows import drivers_by_ladder, ladder_letters, rung_rows
 from kit.tui.rows.level_card_rows import COLUMN, best_splits, level_card, star_line, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.rows.progress_marks import share_bar
@@ -356,17 +356,12 @@ class LevelsScreen(RowsScreen[None]):
         the sectors of one's best drive. Parts for which there is no room are left out whole."""
         level, best, width = self.chosen.level, self.chosen.best_times, CARD_WIDTH - 2 * MARGIN
         reference, company = self._references[level.id], company_of(self._known.get(level.id, ()))
-        groups = [  # those that have the same ladder together, until one of them has a time on it
-            part
-            for drivers in LADDERS
-            for part in ([(each,) for each in drivers] if set(drivers) & best.keys() else [drivers])
-        ]
         ladders = [
             [
                 ruled_title("ladder", width, f"by {' or '.join(each.value for each in drivers)}"),
                 *rung_rows(drivers[0], reference, best.get(drivers[0])),
             ]
-            for drivers in groups
+            for drivers in drivers_by_ladder(best)
             if reference is not None
         ]
         parts = level_card(

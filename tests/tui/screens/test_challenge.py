@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
@@ -123,7 +124,7 @@ def test_a_puzzle_is_played_by_keys_and_kept_in_its_file(journal: ProgressJourna
         screen = pilot.app.screen
         assert isinstance(screen, PuzzleScreen)
         await seen(pilot, "▀██████████▀")  # the medal beside the board
-        assert "█ S" in "\n".join(rows(pilot)), "which keeps its size"
+        assert re.search("█ S. {2}[.←→↑↓] {3}", "\n".join(rows(pilot))), "which keeps its size"
         await pilot.press("u")
         assert screen._flourish.number == 0
         assert "▀██████████▀" not in "\n".join(rows(pilot))

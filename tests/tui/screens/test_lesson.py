@@ -208,6 +208,7 @@ def test_a_step_that_is_read_has_the_last_world_beside_it_where_there_is_room(
         if is_seen:
             await until(pilot, lambda: set(text(pilot)) & set(ROBOT), "the robot of the first step")
         assert bool(set(text(pilot)) & set(ROBOT)) is is_seen
+        assert bool(steps_row(pilot)) is is_seen
         assert all(len(line) <= size[0] for line in rows(pilot))
 
     stage(student.screen, scene, size=size)
