@@ -381,7 +381,6 @@ def ticking_loops(source: Path) -> Iterator[int]:
                 yield call.lineno
 
 
-@pytest.mark.long
 def test_nobody_else_has_a_loop_of_ticks() -> None:
     sources = [*(ROOT / "kit").rglob("*.py"), *(ROOT / "grader").rglob("*.py")]
     found = {

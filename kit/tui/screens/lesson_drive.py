@@ -80,6 +80,7 @@ class ReplayScreen(WatchScreen):
 
     def _session(self) -> Session:
         """Called in the helper thread."""
+        from kit.run.episode import run_until
         from kit.run.session import Session
         from kit.school.game.replayed_goal import show_goal
 
@@ -87,8 +88,7 @@ class ReplayScreen(WatchScreen):
         session = Session(self._place, seed=told.seed, step_size=told.step_size, always_scan=True)
         show_goal(session)
         session.play_back(told)
-        for _ in range(self._first):
-            session.runner.tick()
+        run_until(session.runner, ticks=self._first)
         session.runner.paused |= self._is_halted
         return session
 
