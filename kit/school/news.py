@@ -14,7 +14,7 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 
 NEWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {
-        "start": ("0.2.0", "W, A, S and D drive the robot; 4 opens the game."),
+        "start": ("0.2.0", "W, A, S and D drive. 4: a game about a hospital's new robot wheelchair."),
         "levels": (
             "0.2.0",
             "d is today's maze, the same for all; 2 plays tag or a race.",

@@ -34,26 +34,60 @@ class MenuItem:
     name: str
     """Name of the screen's method that opens it."""
     title: str
+    note: str
+    """What it is about in at most 12 columns, where there is nothing newer to tell of it."""
     about: str
     words: str = ""
     """Other words by which the palette finds it."""
 
 
 MENU: Final = (
-    MenuItem("next_lesson", "Next lesson", "The first step that is not done yet.", "continue learn"),
-    MenuItem("lessons", "Lessons", "In order: predict, run, explain, change, make.", "course exercises"),
-    MenuItem("drive", "Drive", "Any map and any program, your own too.", "play simulate controller"),
-    MenuItem("levels", "Game", "Levels and puzzles, by hand, program or agent.", "levels medals race"),
+    MenuItem("next_lesson", "Next lesson", "", "The first step that is not done yet.", "continue learn"),
+    MenuItem("lessons", "Lessons", "", "In order: predict, run, explain, change, make.", "course exercises"),
     MenuItem(
-        "train", "Train", "Train an agent to drive, and watch it learn.", "trainings learning runs sweeps"
+        "drive", "Drive", "any map", "Any map and any program, your own too.", "play simulate controller"
     ),
     MenuItem(
-        "layers", "Layers", "The fewest layers for what must collide and be seen.", "collisions planner"
+        "levels",
+        "Game",
+        "levels",
+        "A hospital tries out its robot wheelchair: drive it.",
+        "levels puzzles medals race story",
     ),
-    MenuItem("quiz", "Quiz", "What do you know, and how sure are you?", "questions scores practice"),
-    MenuItem("form", "Form", "What you knew before, and what you have learned.", "evaluation survey"),
-    MenuItem("progress", "Progress", "What you have done, and how to export it.", "medals streak results"),
-    MenuItem("league", "League", "Programs and agents race, play tag and are rated.", "tournament ratings"),
+    MenuItem(
+        "train",
+        "Train",
+        "agents learn",
+        "Train an agent to drive, and watch it learn.",
+        "trainings learning runs sweeps",
+    ),
+    MenuItem(
+        "layers",
+        "Layers",
+        "collisions",
+        "The fewest layers for what must collide and be seen.",
+        "collisions planner",
+    ),
+    MenuItem(
+        "quiz", "Quiz", "questions", "What do you know, and how sure are you?", "questions scores practice"
+    ),
+    MenuItem(
+        "form", "Form", "survey", "What you knew before, and what you have learned.", "evaluation survey"
+    ),
+    MenuItem(
+        "progress",
+        "Progress",
+        "what is done",
+        "What you have done, and how to export it.",
+        "medals streak results",
+    ),
+    MenuItem(
+        "league",
+        "League",
+        "rated races",
+        "Programs and agents race, play tag and are rated.",
+        "tournament ratings",
+    ),
 )
 MENU_KEYS: Final = "123456789l"
 """The keys of its lines."""
@@ -72,7 +106,7 @@ def menu(
     is_wide = columns >= WIDE_PANEL and room >= WIDE_ROWS
     rows = [row()]
     for number, item in enumerate(MENU):
-        rows.append(_item_row(number, item, overview, number == chosen, width))
+        rows.append(_item_row(number, item, _status(item.name, overview), number == chosen, width, is_wide))
         if item.name == "next_lesson":
             text, most = _next_step_text(overview), 2 if is_wide else 3
             rows += [row("     ", each) for each in _padded(text, most, width - 5)]
@@ -90,22 +124,21 @@ def menu(
     rows += today_rows(overview, width, room - len(rows))
     left = room - len(rows)
     if is_wide:
-        level = next_level_rows(overview, picture)
+        level = next_level_rows(overview, picture, left)
         won = side_by_side(level, won_rows(overview, width - PICTURE - MARGIN), PICTURE + MARGIN)
         return [*rows, *won] if len(won) <= left else rows
     return [*rows, *won_rows(overview, width, left)]
 
 
-def _item_row(
-    number: int, item: MenuItem, overview: StudentOverview | None, is_chosen: bool, width: int
-) -> Row:
+def _item_row(number: int, item: MenuItem, status: str, is_chosen: bool, width: int, is_wide: bool) -> Row:
+    """``is_wide``: whether what it opens stands below it, so that its note is of no use."""
     room, style = width - TITLE - 6, "chosen" if is_chosen else ""
-    status = _status(item.name, overview)
+    note = status or ("" if is_wide else item.note)
     return row(
         (">" if is_chosen else " ", "bold"),
         (f" {MENU_KEYS[number]}  ", "chosen" if is_chosen else "press"),
         (f"{item.title:<{TITLE}}", style),
-        (f" {status:<{room}}", style or "dim"),
+        (f" {note:<{room}}", style or "dim"),
     )
 
 

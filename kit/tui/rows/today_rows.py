@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from kit.document.blocks import CellStyle, Column, Table, Tone, ToneText, labelled_table
 from kit.document.rows import Row, row
 from kit.document.tables import table_rows
-from kit.plain_text import counted
+from kit.plain_text import counted, wrap
 from kit.tui.rows.menu_rows import FRAME, MARGIN, PANEL_WIDTH, PICTURE, WIDE_ROWS
 from kit.tui.rows.ruled_title import ruled_title
 
@@ -19,13 +19,16 @@ MOST_TRAININGS: Final = 3
 """Running trainings that are named."""
 
 
-def next_level_rows(overview: StudentOverview, picture: Sequence[str]) -> list[Row]:
-    """The first level without a medal, as a picture; nothing where all have one."""
-    if overview.next_level is None:
+def next_level_rows(overview: StudentOverview, picture: Sequence[str], room: int = WIDE_ROWS) -> list[Row]:
+    """The first level without a medal, as a picture, and its story where there is ``room`` for it, in rows; nothing where all
+    levels have one."""
+    level = overview.next_level
+    if level is None:
         return []
-    name = overview.next_level.title
-    return [row(), row(" ", *ruled_title("next level", PICTURE - 1)), *(row(" ", each) for each in picture),
-            row("  ", (f"4  {name}", "dim"))]  # fmt: skip
+    rows = [row(), row(" ", *ruled_title("next level", PICTURE - 1)), *(row(" ", each) for each in picture),
+            row("  ", ("4", "press"), f"  {level.title}")]  # fmt: skip
+    story = wrap(level.story or level.hint, PICTURE - MARGIN)
+    return [*rows, *(row("  ", (each, "dim")) for each in story)] if len(rows) + len(story) <= room else rows
 
 
 def today_rows(

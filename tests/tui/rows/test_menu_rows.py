@@ -8,8 +8,8 @@ import pytest
 
 from kit.document.rows import row_width
 from kit.school.game.levels import all_levels
-from kit.tui.rows.menu_rows import FRAME, MENU, PANEL_WIDTH, WIDE_PANEL, menu
-from kit.tui.rows.today_rows import today_rows, won_rows
+from kit.tui.rows.menu_rows import FRAME, MENU, PANEL_WIDTH, WIDE_PANEL, WIDE_ROWS, menu
+from kit.tui.rows.today_rows import next_level_rows, today_rows, won_rows
 from kit.tui.student_store import StudentOverview
 from tests.tui.lesson_stage import row_text
 
@@ -40,9 +40,30 @@ def test_a_wide_panel_says_what_every_line_opens_and_shows_the_next_level(room: 
     assert all(row_width(each) <= WIDE_PANEL - FRAME for each in rows)
     text = " ".join(" ".join(row_text(each).split()) for each in rows)
     is_high = room > 40
-    assert ("program or agent" in text) == is_high
+    assert all((item.about in text) == is_high for item in MENU[1:])
     assert ("PICTURE" in text) == is_high
     assert (level.title in text) == is_high
+
+
+def test_the_next_level_tells_its_story_where_there_is_room_for_all_of_it() -> None:
+    overview = StudentOverview(next_level=next(iter(all_levels())))
+    assert overview.next_level is not None
+    heights = set()
+    for room in range(10, WIDE_ROWS):
+        rows = next_level_rows(overview, ("PICTURE",) * 9, room)
+        text = " ".join(" ".join(row_text(each).split()) for each in rows)
+        assert overview.next_level.title in text
+        assert (overview.next_level.story in text) == (len(rows) > 12)
+        heights.add(len(rows))
+        assert len(rows) <= max(room, 12)
+    assert len(heights) == 2
+
+
+def test_every_line_of_a_narrow_menu_says_what_it_is_before_it_is_chosen() -> None:
+    lines = [row_text(each).split() for each in menu(StudentOverview(is_whole=True), 0, 24)]
+    for item in MENU[2:]:
+        (line,) = [each for each in lines if item.title in each]
+        assert line[line.index(item.title) + 1 :]
 
 
 def test_today_names_the_maze_the_medal_the_questions_and_the_trainings() -> None:
