@@ -8,7 +8,6 @@ from kit.controllers import find_controller
 from kit.run.episode import run_until
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
-from kit.school.game.levels import find_level
 
 
 def test_a_key_that_is_pressed_before_space_is_let_go_drives() -> None:
@@ -27,7 +26,7 @@ def test_a_key_that_is_pressed_before_space_is_let_go_drives() -> None:
 
 
 def test_walls_at_the_sides_of_a_gap_slow_nobody_down_who_drives_through_it() -> None:
-    with Session(find_level("the-door").find_scenario(), always_scan=True) as session:
+    with Session(find_scenario("hall_center_door"), always_scan=True) as session:
         session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
         robot = session.scenario.partners[0]

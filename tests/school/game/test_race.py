@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import UTC, datetime
+from itertools import combinations
 from pathlib import Path
 
 import pytest
@@ -39,7 +40,7 @@ from kit.school.game.race import (
     finish_order,
     race_controller,
 )
-from kit.school.game.references import drive_reference
+from kit.school.game.references import drive_reference, load_drives
 from kit.school.game.starts import OWN_SEED
 from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
@@ -186,6 +187,23 @@ def test_medals_are_counted_by_driver_beside_them() -> None:
     assert first.rules == {ExtraRule.CLEAN, ExtraRule.NO_STOP}
     assert found["left-turn"].is_open
     assert not found["two-doors"].is_open  # only a controller of the kit was through the door
+
+
+def test_no_two_levels_are_won_by_the_same_drive() -> None:
+    drives = load_drives()
+
+    def is_won(level: GameLevel, name: str) -> bool:
+        finish, _ = drive_reference(level, drives[name])
+        return finish.reached and finish.seconds < 1.5 * drives[level.id].seconds
+
+    twins = [
+        (level, other)
+        for level, other in combinations(LEVELS, 2)
+        if level.targets and (level.targets, level.world) == (other.targets, other.world)
+    ]
+    assert twins
+    for level, other in twins:
+        assert not (is_won(level, other.id) and is_won(other, level.id)), (level.id, other.id)
 
 
 def test_a_newcomer_can_try_the_first_level_of_each_world_and_no_later_one() -> None:
