@@ -14,7 +14,7 @@ from kit.school.game.levels import GameLevel
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.rows import drive_end_rows
 from kit.tui.rows.level_card_rows import Company, level_card
-from kit.tui.rows.medal_rows import drawn_columns, medal_drawing, medal_size
+from kit.tui.rows.medal_rows import CORNER, drawn_columns, medal_drawing, medal_size
 from kit.tui.rows.ruled_title import ruled_title
 
 WIDTH: Final = 74
@@ -106,6 +106,8 @@ class DriveEndPage:
     """Those of ``revealed`` that a small map stands beside, the first ones."""
     charts: Sequence[Row] = ()
     """What has a column of its own."""
+    is_medal_in_corner: bool = False
+    """Whether ``fixed`` leaves room on its right for a small drawn medal."""
 
     @property
     def room_above(self) -> int:
@@ -159,11 +161,18 @@ def _without_map(told: DriveEnd, width: int, height: int) -> DriveEndPage:
 
 
 def _with_small_map(told: DriveEnd, width: int, height: int, encoder: Encoder) -> DriveEndPage:
-    """A drawn medal above medal, times and sectors, the map beside these, and below both what else has room."""
+    """A drawn medal above medal, times and sectors, or where there is no room for that in the upper right corner; the map beside
+    these, and below both what else has room."""
     size = medal_size(height)
     medal = len(medal_drawing(told.record.medal, size))
     earned = _earned(told, LEFT)
     fixed = _fixed(told, width, height, medal_rows=medal, earned=earned)
+    in_corner = [] if size else medal_drawing(told.record.medal, CORNER)
+    narrower = _fixed(told, width - drawn_columns(CORNER) - MARGIN, height, earned=earned)
+    least = max(LEAST_BESIDE_ROWS, len(earned) + len(told.times))
+    least += sum(map(len, (narrower, told.ladder, told.starts, told.won)))
+    is_in_corner = 0 < len(in_corner) <= len(narrower) and least + ROWS_AROUND <= height
+    fixed = narrower if is_in_corner else fixed
     room = height - len(fixed) - medal - ROWS_AROUND
     rows = [*earned, *told.times]
     is_won_beside = _fit(rows, told.won)
@@ -184,7 +193,7 @@ def _with_small_map(told: DriveEnd, width: int, height: int, encoder: Encoder) -
     if (left := room - len(shown)) > 0 and len(shown) > len(beside) + len(below) + len(after):
         charts = _charts(told, WIDTH - MARGIN, 0 if speed else left // 2, left, encoder)
         shown += charts if len(charts) <= left else []
-    return DriveEndPage(MapPlace.BESIDE_TIMES, fixed, shown, medal, beside)
+    return DriveEndPage(MapPlace.BESIDE_TIMES, fixed, shown, medal, beside, is_medal_in_corner=is_in_corner)
 
 
 def _fixed(

@@ -17,8 +17,8 @@ def medal_row(medal: Medal, *, is_new: bool) -> Row:
 
 HIGH, HIGHEST = 30, 45
 """Rows of a screen from which on a medal is drawn, and from which on it is larger."""
-SMALL, LARGE = 14, 20
-"""Columns of a drawn medal."""
+CORNER, SMALL, LARGE = 10, 14, 20
+"""Columns of a drawn medal; the one that stands in a corner is the disc alone."""
 LETTERS: Final = {
     "B": ("####.", "#...#", "#...#", "####.", "#...#", "#...#", "####."),
     "S": (".####", "#....", "#....", ".###.", "....#", "....#", "####."),
@@ -51,7 +51,7 @@ def medal_drawing(medal: Medal, size: int, spark: int = 0) -> list[Row]:
     sparks beside it, and a line of light that goes down over it."""
     if medal is Medal.NONE or not size:
         return []
-    drawn = [(line, "code") for line in _ribbon(size)]
+    drawn = [(line, "code") for line in _ribbon(size)] if size > CORNER else []
     drawn += [(line, MEDAL_STYLES[medal]) for line in _disc(MEDAL_SIGNS[medal], size)]
     rows = []
     for number, (line, style) in enumerate(drawn):

@@ -53,7 +53,7 @@ from kit.tui.rows.drive_end_page import (
 )
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
-from kit.tui.rows.medal_rows import SMALL, drawn_columns, medal_drawing, medal_size
+from kit.tui.rows.medal_rows import CORNER, drawn_columns, medal_drawing, medal_size
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.file_editor import EditsFile, edit_file
 from kit.tui.screens.lesson_drive import RecordingScreen
@@ -153,7 +153,7 @@ class DriveResultScreen(EditsFile, ModalScreen[Wish]):
         self._page = DriveEndPage(MapPlace.NOWHERE, (), ())
         self._shown = 0
         self._note: Row = ()
-        self._flourish = Flourish(theme, self._show_flourish)
+        self._flourish = Flourish(theme, self._show)
         self._world = WorldView(lambda: theme.encoder, theme.palette)
 
     @property
@@ -197,15 +197,11 @@ class DriveResultScreen(EditsFile, ModalScreen[Wish]):
             self._shown = len(self._page.revealed)
         self._show()
 
-    def _show_flourish(self) -> None:
-        self._place_map()
-        self._show()
-
     def on_key(self, event: events.Key) -> None:
         """Any key ends the flourish, but one that may still be held from driving."""
         if self._flourish.number and drive_key(event.key) is None:
             self._flourish.end()
-            self._show_flourish()
+            self._show()
 
     @property
     def _is_all_shown(self) -> bool:
@@ -227,12 +223,11 @@ class DriveResultScreen(EditsFile, ModalScreen[Wish]):
         self._show()
 
     def _place_map(self) -> None:
-        """Places the map beside or below the text; a small one comes after the flourish, which has its place."""
+        """Places the map beside or below the text."""
         page = self._page
         for place in MapPlace:
             self.set_class(place is page.place, place.value)
         is_small = page.place is MapPlace.BESIDE_TIMES
-        self._world.visible = not (is_small and self._flourish.number and not page.medal_rows)
         self._world.styles.margin = (page.room_above if is_small else 0, 0, 0, 0)
         self._world.styles.height = len(page.beside) if is_small else "1fr"
 
@@ -256,15 +251,16 @@ class DriveResultScreen(EditsFile, ModalScreen[Wish]):
         keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         hidden = [row()] * max(0, len(page.revealed) - self._shown)  # what is below keeps its place
         rows = [*page.revealed[: self._shown], *hidden]
-        size, medal = medal_size(self.app.size.height), self._medal
-        if medal and page.medal_rows:
+        size, medal, fixed = medal_size(self.app.size.height), self._medal, page.fixed
+        if page.is_medal_in_corner:
+            drawn = medal_drawing(self._result.record.medal, CORNER, self._flourish.number)
+            beside = side_by_side(fixed[: len(drawn)], drawn, self.app.size.width - drawn_columns(CORNER))
+            fixed = [*beside, *fixed[len(drawn) :]]
+        elif medal and page.medal_rows:
             rows = [*medal, *rows]
         elif medal:
             rows = [*side_by_side(medal, rows[: len(medal)], drawn_columns(size)), *rows[len(medal) :]]
-        elif self._flourish.number and page.place is MapPlace.BESIDE_TIMES and not size:
-            drawn = medal_drawing(self._result.record.medal, SMALL, self._flourish.number)
-            rows = [*side_by_side(rows[: len(drawn)], drawn, LEFT), *rows[len(drawn) :]]
-        shown = {"text": [*page.fixed, *rows, self._note], "charts": page.charts, "keys": [keys]}
+        shown = {"text": [*fixed, *rows, self._note], "charts": page.charts, "keys": [keys]}
         for text in self.query(TextRows):  # none where the kit is left meanwhile
             text.show(shown[text.id or ""])
 

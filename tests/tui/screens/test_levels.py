@@ -45,6 +45,7 @@ from kit.tui.rows.drive_end_page import (
 from kit.tui.rows.drive_end_rows import LEAST_CURVE_ROWS
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.rows.level_rows import THUMBNAIL
+from kit.tui.rows.medal_rows import CORNER, medal_drawing
 from kit.tui.screens import level_result
 from kit.tui.screens import levels as levels_module
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
@@ -104,9 +105,12 @@ def play(
     asyncio.run(run())
 
 
+def screen_lines(app: App[None]) -> list[str]:
+    return ["".join(segment.text for segment in strip) for strip in app.screen._compositor.render_strips()]
+
+
 def flat(app: App[None]) -> str:
-    rows = ("".join(segment.text for segment in strip) for strip in app.screen._compositor.render_strips())
-    return " ".join(" ".join(rows).split())
+    return " ".join(" ".join(screen_lines(app)).split())
 
 
 def test_a_small_terminal_shows_the_chosen_level_and_one_that_is_too_small_says_so(
@@ -706,6 +710,32 @@ def result_of(workspace: Workspace, progress: ProgressJournal) -> DriveResult:
     return DriveResult(level, DriverKind.HAND, finish, record, recording, [ghost], ghost.seconds, ())
 
 
+def test_a_medal_is_drawn_in_the_corner_of_a_small_screen_and_the_map_stays(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    workspace = prepare_workspace(tmp_path / "desk")
+    result = result_of(workspace, progress)
+    assert result.record.medal > result.record.previous_medal
+    drawn = [row_text(each).strip() for each in medal_drawing(result.record.medal, CORNER)]
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        dialog = DriveResultScreen(screen._theme, result, workspace)
+        await screen.app.push_screen(dialog)
+        await wait_until_shown(pilot, lambda: dialog._world._scene is not None)
+        await pilot.press("enter")
+        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._page.revealed))
+        dialog._flourish.end()
+        dialog._show()
+        await pilot.pause()
+        lines = screen_lines(screen.app)
+        assert all(sign in line for sign, line in zip(drawn, lines, strict=False))
+        assert len(drawn) <= dialog._world.region.y, "above the map"
+        assert not any("…" in line for line in lines)
+        assert result.level.ending.split()[-1] in flat(screen.app)
+
+    play(scene, progress, tmp_path / "desk")
+
+
 def test_the_way_is_coloured_by_what_it_gained(progress: ProgressJournal, tmp_path: Path) -> None:
     result = result_of(prepare_workspace(tmp_path / "desk"), progress)
     scene = scene_of_drive(result)
@@ -828,8 +858,8 @@ def test_a_new_medal_has_a_flourish_that_any_key_ends_unless_motion_is_reduced(
         await screen.app.push_screen(dialog)
         await pilot.press("w")  # still held from driving
         assert (dialog._flourish.number > 0) is not still
-        assert dialog._world.visible is (still or size[0] > 80)
-        assert ("▀██████████▀" in flat(screen.app)) is (not still or size[0] > 80), "the medal's disc"
+        foot = {80: "▀▀████▀▀", 120: "▀██████████▀"}[size[0]]
+        assert foot in flat(screen.app), "the medal's disc"
         await pilot.press("x")
         assert dialog._flourish.number == 0
         assert dialog._world.visible
