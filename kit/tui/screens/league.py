@@ -241,6 +241,8 @@ class LeagueScreen(RowsScreen[None]):
         )
         beside = (" " if told and self._driving else "", "dim")
         note = broken(row("  ", (told, "dim"), beside, *self._driving), width)
+        if self._driving and len(note) > self._note_rows:  # how far it is goes before what else is told
+            note = broken(row("  ", *self._driving), width)
         self._rows("note").show(note[: self._note_rows])
         labels = {"open": "matches" if self._match is None else "replay"}
         keys = footer(self.screen_actions, width, labels=labels, without=self.unavailable_actions)
@@ -397,15 +399,16 @@ class LeagueScreen(RowsScreen[None]):
         keys: tuple[str, ...] = ()
         try:
             keys = await to_thread(self._league.prepare_run)
-            jobs = [each for each in await to_thread(self._league.jobs) if each.key in keys]
-            done: set[str] = set()
+            jobs = await to_thread(self._league.jobs)
+            waiting = [each for each in jobs if each.key in keys]
+            done = {each.key for each in jobs if each.key not in keys}
             begun_s = time.monotonic()
 
             def count(key: str) -> None:
                 if not self.is_attached:
                     raise LeftError("The league was left.")
                 done.add(key)
-                left_s = seconds_left(jobs, done, time.monotonic() - begun_s)
+                left_s = seconds_left(waiting, done, time.monotonic() - begun_s)
                 self.app.call_from_thread(self._show_count, jobs, done, left_s)
                 self.app.call_from_thread(self._read, None)
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
 
-from kit.document.rows import broken
+from kit.document.rows import Row, broken
 from kit.document.tables import list_rows
 from kit.run.metrics import DriveMetrics
 from kit.school.game.league.entries import HOLDERS, Entry
-from kit.school.game.league.league import League, own_league
+from kit.school.game.league.league import League, LeagueJob, own_league
 from kit.school.game.league.league_blocks import matches_table
 from kit.school.game.league.standings import Match, Standings, match_film, read_standings
 from kit.school.game.levels import find_level
@@ -114,16 +114,28 @@ def test_from_the_standings_to_a_match_and_its_replay(tmp_path: Path, size: tupl
 
 
 @pytest.mark.long
-def test_the_screen_runs_the_matches_as_the_command_does(tmp_path: Path) -> None:
+def test_the_screen_runs_the_matches_as_the_command_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     workspace = open_workspace(tmp_path / "home")
     league = make_league(tmp_path, laser=LASER, stands=GIVES_UP)
+    jobs = league.jobs()
+    league.run_job(jobs[0].key)
+    counts: list[tuple[int, int]] = []
+
+    def noted(jobs: Sequence[LeagueJob], done: Collection[str], left_s: float | None) -> Row:
+        counts.append((len(done), len(jobs)))
+        return driving_row(jobs, done, left_s)
+
+    monkeypatch.setattr(league_screen, "driving_row", noted)
 
     async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, "No match has been driven yet")
+        await seen(pilot, f"{len(jobs) - 1} of {len(jobs)} drives and games are still to be run")
         await pilot.press("t")
         await seen(pilot, "laser leads")
 
     stage(lambda theme: LeagueScreen(theme, league, workspace), scene)
+    assert counts == [(done, len(jobs)) for done in range(1, len(jobs) + 1)], "as the standings count"
     assert league.waiting() == ()
     assert (league.folder / HOLDERS).is_file(), "so that nobody else can take a name"
 
