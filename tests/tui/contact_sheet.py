@@ -100,7 +100,7 @@ VISITS: Final = {
     "read": ScreenVisit(("lesson", "A1"), ("l", "Robot learning\r")),
     "exercise": ScreenVisit(("lesson", "C1"), ("l", "circle\r")),
     "levels": ScreenVisit(("game",), seconds=6.0),
-    "level": ScreenVisit(("game", "play", "first-drive"), ("w",), 3.0),
+    "level": ScreenVisit(("game", "play", "first-drive"), tuple("www"), 6.0),
     "result": ScreenVisit(("game", "play", "first-drive"), tuple("zww...ssss"), 18.0),
     "daily": ScreenVisit(("game",), ("d",), 4.0),
     "leaderboard": ScreenVisit(("game",), ("f",), 3.0),

@@ -187,7 +187,8 @@ def _with_small_map(told: DriveEnd, width: int, height: int, encoder: Encoder) -
     if left - len(told.photo_finish) >= max(LEAST_BESIDE_ROWS, len(rows)):
         left -= len(told.photo_finish)
     blank = min(max(LEAST_BESIDE_ROWS, left), MOST_BESIDE_ROWS) - len(rows)
-    speed = drive_end_rows.speed_rows(told.speeds, told.finish.seconds, LEFT, blank, encoder)
+    curve = drive_end_rows.speed_rows(told.speeds, told.finish.seconds, LEFT - MARGIN, blank, encoder)
+    speed = [row(" ", *each) for each in curve]
     beside = [*rows, *speed, *[row()] * (blank - len(speed))]
     shown = _fitting([*beside, *below], told.photo_finish, after, told.needed, room)
     if (left := room - len(shown)) > 0 and len(shown) > len(beside) + len(below) + len(after):
@@ -259,10 +260,10 @@ def _fitting(
 
 def _charts(told: DriveEnd, width: int, speed_room: int, room: int, encoder: Encoder) -> list[Row]:
     """The speed and the lead, each as high as there is room for; in ``room`` rows together."""
-    seconds = told.finish.seconds
+    seconds, width = told.finish.seconds, width - MARGIN
     speed = drive_end_rows.speed_rows(told.speeds, seconds, width, speed_room, encoder)
     lead = drive_end_rows.lead_rows(told.leads, seconds, width, room - len(speed), encoder)
-    return [*speed, *lead]
+    return [row(" ", *each) for each in (*speed, *lead)]
 
 
 def _earned(told: DriveEnd, width: int) -> list[Row]:

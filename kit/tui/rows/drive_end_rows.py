@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.document.rows import MARGIN, Row, row
+from kit.document.rows import Row, row
 from kit.host.failure import Failure, syntax_error
 from kit.plain_text import counted, wrap
 from kit.render.curve import Axes, Curve, draw_curves
@@ -157,7 +157,7 @@ def lead_rows(leads: Sequence[float], seconds: float, width: int, room: int, enc
     rows; none for fewer than ``LEAST_CURVE_ROWS``."""
     title = "ahead of the reference"
     return _curve_rows(
-        title, "s, below the dashes is behind", leads, seconds, width, room, Axes("s", goal=0.0), encoder
+        title, "s, below 0: behind", leads, seconds, width, room, Axes("s", goal=0.0), encoder
     )
 
 
@@ -181,9 +181,9 @@ def _curve_rows(
         return []
     curve = Curve("", np.linspace(0.0, seconds, len(values)), np.array(values))
     axes = replace(axes, end=seconds, margin=SCALE)
-    frame = draw_curves([curve], axes, width - MARGIN, min(room, HIGHEST_CURVE), encoder)
-    drawn = [row(" ", (each[:SCALE], "dim"), (each[SCALE:], "code")) for each in frame.rows()[1:-1]]
-    return [row(" ", *ruled_title(title, width - MARGIN, note)), *drawn, row(" ", (frame.rows()[-1], "dim"))]
+    frame = draw_curves([curve], axes, width, min(room, HIGHEST_CURVE), encoder)
+    drawn = [row((each[:SCALE], "dim"), (each[SCALE:], "code")) for each in frame.rows()[1:-1]]
+    return [ruled_title(title, width, note), *drawn, row((frame.rows()[-1], "dim"))]
 
 
 def needed_rows(bins: Sequence[HistogramBin], width: int, unit: str = "s", decimals: int = 2) -> list[Row]:

@@ -44,8 +44,10 @@ from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from kit.world.problems import WorldError
 
-WIDE: Final = 150
+WIDE: Final = 118
 """Columns from which today's level stands beside the times."""
+BOARD: Final = 88
+"""Columns of standings and times at most, where it does."""
 NOTES: Final = (
     ("a time", "the best drive of one player, run again before it is shown"),
     ("another machine", "driven on another kind of machine, where it is the same but not to the bit"),
@@ -101,7 +103,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
 
     @property
     def _today_columns(self) -> int:
-        return self.size.width * 2 // 5
+        return max(self.size.width * 2 // 5, self.size.width - BOARD)
 
     def _board(self, width: int, height: int) -> list[Row]:
         """The standings, and below them the times, in as many columns as there is room for."""
@@ -137,7 +139,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         nearest = _rows_of(reach_table(medals_in_reach(own)[:MOST_IN_REACH]), columns)
         rows = [
             ruled_title("today's maze", columns, level.title),
-            *picture_rows(picture_of(level, columns, MAP_ROWS, glyphs)),
+            *picture_rows(picture_of(level, columns, min(MAP_ROWS, columns // 3), glyphs)),
             row(),
             *(times or [row(("Nobody on the board has driven it yet.", "dim"))]),
             row(),

@@ -53,6 +53,7 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
+from kit.tui.rows.drive_end_rows import lead_rows
 from kit.tui.rows.instrument_rows import TWO_COLUMNS
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.ladder_rows import in_reach_row
@@ -90,6 +91,8 @@ LETTER_NOTES: Final = (
 )
 ROWS_OF_FIGURES: Final = {False: 7, True: 4}
 """Rows of a small panel that its card leaves to the robot's figures, which stand in one column or in two."""
+LEAD_INTERVAL: Final = 0.2
+"""Between two values of the curve of the lead [s]."""
 SIGHT: Final = 1.5
 """Distance within which the target is drawn in fog [m]."""
 
@@ -171,6 +174,10 @@ class LevelDrive(EditsFile, WatchScreen):
         self._recorder: Recorder | None = None
         self._comparison: GhostComparison | None = None
         self._behind: float | None = None
+        self._leads: list[float] = []
+        """How far ahead of the reference the drive was, from interval to interval [s]."""
+        self._lead_curve: tuple[tuple[int, int, int], list[Row]] = ((0, 0, 0), [])
+        """Drawn for so many of them, in so many columns and rows."""
         self._is_over = False
         self._strength = 1.0
         self._told_beside: frozenset[str] = frozenset()
@@ -222,6 +229,7 @@ class LevelDrive(EditsFile, WatchScreen):
     def open_world(self) -> None:
         self._referee, self._is_over, self._result_row = None, False, ()
         self._recorder, self._behind, self._notice, self._has_warned = None, None, None, False
+        self._leads = []
         self._waits = False
         self._comparison = None if self._reference is None else GhostComparison(self._reference)
         scenario = self._level.find_scenario()
@@ -349,7 +357,18 @@ class LevelDrive(EditsFile, WatchScreen):
             self._level, self._driver, reference, self._kept, width, room, self._company, standing
         )
         self._told_beside = frozenset(card) if self.query_one("#panel").display else frozenset()
-        return [each for part in card.values() for each in part]
+        rows = [each for part in card.values() for each in part]
+        has_room = self._widths.beside and not self.shows_program
+        return [*rows, *self._lead_rows(width, room - len(rows))] if has_room else rows
+
+    def _lead_rows(self, width: int, room: int) -> list[Row]:
+        """A curve of how far ahead of the reference the drive was until now; drawn anew only with a new value."""
+        wanted = len(self._leads), width, room
+        if wanted != self._lead_curve[0]:
+            seconds = (len(self._leads) - 1) * LEAD_INTERVAL
+            curve = lead_rows(self._leads, seconds, width, room, self._theme.encoder)
+            self._lead_curve = wanted, curve
+        return self._lead_curve[1]
 
     def _view_arrived(self, view: View) -> None:
         """Replaces the targets and bumps of the map's case by the level's, in the world's thread."""
@@ -398,6 +417,9 @@ class LevelDrive(EditsFile, WatchScreen):
             and not self._is_over
         ):
             self._behind = self._comparison.update(view.time_s, view.pose.x, view.pose.y)
+            if self._behind is not None:
+                newest = round(view.time_s / LEAD_INTERVAL) + 1 - len(self._leads)
+                self._leads += [-self._behind] * max(0, newest)
         self._rows("heading").show([self._heading(view.time_s)])
         if self._cut_short is not None:
             going_on = level_rows.before_it_goes_on(view.time_s)

@@ -29,7 +29,7 @@ from kit.tui.app import KitApp
 from kit.tui.rows.drive_end_rows import finish_sentence
 from kit.tui.screens import file_editor
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.level_drive import LevelDrive
+from kit.tui.screens.level_drive import LEAD_INTERVAL, LevelDrive
 from kit.tui.screens.level_result import DriveResultScreen
 from kit.tui.textual_patches import FITTING_S
 from tests.driving_program import driving_program
@@ -81,6 +81,30 @@ def test_the_card_of_a_level_has_room_for_all_its_parts_beside_the_picture(
 
     with ProgressJournal(workspace.folder) as journal:
         stage(lambda theme: LevelDrive(theme, level, [], journal, workspace), scene, size=size)
+
+
+def test_a_large_screen_draws_how_the_drive_has_stood_against_the_reference(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    level = find_level("first-drive")
+    ghost = load_reference_ghost(level)
+    assert ghost is not None
+
+    async def scene(pilot: Pilot[None]) -> None:
+        drive = pilot.app.screen
+        assert isinstance(drive, LevelDrive)
+        await until(pilot, lambda: drive.view is not None, "the world")
+        assert "ahead of the reference" not in text(pilot)
+        drive.drive_keys_changed(("p_up",), drive.drive.state)
+        await seen(pilot, "ahead of the reference")
+        await until(pilot, lambda: drive._behind is not None and drive._behind > 0.5, "a slow drive")
+        assert drive._leads[-1] < 0.0, "one that is behind is not ahead"
+        assert drive.view is not None
+        assert len(drive._leads) <= round(drive.view.time_s / LEAD_INTERVAL) + 1
+        await pilot.press("r")
+        await until(pilot, lambda: not drive._leads, "the next drive")
+
+    with ProgressJournal(workspace.folder) as journal:
+        stage(lambda theme: LevelDrive(theme, level, [ghost], journal, workspace), scene, size=(200, 50))
 
 
 def test_a_drive_behind_a_dialog_is_fitted_to_a_terminal_that_is_resized(tmp_path: Path) -> None:

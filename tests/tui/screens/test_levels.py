@@ -26,7 +26,7 @@ from kit.school.game.challenges import all_challenges
 from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.drive_records import DriveRecord, record_drive, save_film
 from kit.school.game.levels import GameLevel, all_worlds
-from kit.school.game.medal import Medal, medal_time
+from kit.school.game.medal import RUNGS, Medal, medal_time
 from kit.school.game.player_progress import ExtraRule, offered_rules
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
@@ -596,16 +596,20 @@ def test_a_puzzle_is_pictured_beside_the_list_of_all(
     play(scene, progress, tmp_path / "desk", (width, 40))
 
 
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)])
 def test_a_large_leaderboard_tells_what_todays_level_asks_for(
-    progress: ProgressJournal, tmp_path: Path
+    progress: ProgressJournal, tmp_path: Path, size: tuple[int, int]
 ) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         await pilot.press("f")
         level = daily_level(today())
         await wait_until_shown(pilot, lambda: level.hint in flat(pilot.app))
-        assert all(each.description(level) in flat(pilot.app) for each in offered_rules(level))
+        assert "◎" in flat(pilot.app), "on its map"
+        assert all(each.title in flat(pilot.app) for each in RUNGS)
+        if size[1] > 40:
+            assert all(each.description(level) in flat(pilot.app) for each in offered_rules(level))
 
-    play(scene, progress, tmp_path / "desk", (200, 50))
+    play(scene, progress, tmp_path / "desk", size)
 
 
 def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, tmp_path: Path) -> None:
