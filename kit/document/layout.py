@@ -223,14 +223,17 @@ def _code_rows(block: Code, page: Page) -> list[Row]:
 
 def _code_line_rows(line: str, page: Page) -> list[Row]:
     """What goes on in the middle of a word has no margin: a shell joins it with what stands before the backslash. Where that
-    cannot be copied, it is indented like the row before, and a word may reach into the margin on the right."""
+    cannot be copied, it is indented like the word's beginning, and a word may reach into the margin on the right."""
     room = page.width + page.margin if page.is_beside else page.width
     made: list[Row] = []
+    indent = 0
     for before, part in pairwise(["", *broken_code(line, room)]):
         margin = " " * page.margin
         if before.endswith("\\") and not before.endswith(" \\"):
-            margin += " " * min(len(before) - len(before.lstrip()), room - len(part))
+            margin += " " * min(indent, room - len(part))
             margin = margin if page.is_beside else ""
+        else:
+            indent = len(part) - len(part.lstrip())
         made.append(_parts((margin, ""), (part, Tone.CODE)))
     return made
 

@@ -74,6 +74,17 @@ def test_a_long_path_is_broken_behind_a_slash_and_goes_on_in_the_margin_only_whe
         assert end.startswith(" " * MARGIN) is is_beside
 
 
+def test_a_path_on_three_rows_beside_something_else_keeps_its_indentation() -> None:
+    code = Code(
+        ("kit drive simple --controller ~/robot-kit/lessons/09-your-own-controller/circle/circle.py",), 4
+    )
+    rows = [row_text(each) for each in rows_of([code], Page(36, MARGIN, is_beside=True))]
+    path = rows[next(number for number, each in enumerate(rows) if "~/" in each) :]
+    assert len(path) >= 3
+    assert all(len(each) - len(each.lstrip()) > MARGIN for each in path)
+    assert all(len(each) <= 36 + 2 * MARGIN for each in path)
+
+
 def test_a_word_beside_something_else_may_reach_into_the_right_margin() -> None:
     code = Code(("kit drive " + "x" * 42,))
     whole = [row_text(each) for each in rows_of([code], Page(40, MARGIN, is_beside=True))]

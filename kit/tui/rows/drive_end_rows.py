@@ -156,9 +156,7 @@ def lead_rows(leads: Sequence[float], seconds: float, width: int, room: int, enc
     """A curve of how far ahead of the reference a drive of ``seconds`` was, from its beginning to its end, in at most ``room``
     rows; none for fewer than ``LEAST_CURVE_ROWS``."""
     title = "ahead of the reference"
-    return _curve_rows(
-        title, "s, below 0: behind", leads, seconds, width, room, Axes("s", goal=0.0), encoder
-    )
+    return _curve_rows(title, "s, below 0: behind", leads, seconds, width, room, Axes("s", goal=0.0), encoder)
 
 
 def speed_rows(speeds: Sequence[float], seconds: float, width: int, room: int, encoder: Encoder) -> list[Row]:
