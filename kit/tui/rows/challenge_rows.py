@@ -50,7 +50,7 @@ DRAWING_SHARE: Final = 0.5
 LEAST_BOARD: Final = 60
 """Columns of a board that is no drawing."""
 GAP: Final = 2
-LARGEST_SCALE: Final = 5
+LARGEST_SCALE: Final = 8
 """More would only be larger: the room tells more instead."""
 LONG_LIST, LEAST_LISTED = 16, 4
 """Rows of a part that may be cut, and the fewest of it that are shown."""

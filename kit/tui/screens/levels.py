@@ -418,16 +418,16 @@ class LevelsScreen(RowsScreen[None]):
         )
         if has_picture:
             height = height if is_beside else self._middle_rows - len(heading)
+            beside = min(width - column - 1, WIDEST_BESIDE) - MARGIN
+            lesson = challenge_rows.lesson_below(chosen, beside, height) if is_beside else []
             picture = challenge_rows.challenge_picture(
-                chosen, width - column - 1, height, self._theme.graph_glyphs
+                chosen, width - column - 1, height - len(lesson), self._theme.graph_glyphs
             )
             below = [row(), *about] if is_beside else []
             if is_beside:
                 checks = challenge_events(self._progress, chosen)
                 below += challenge_rows.challenge_standing(chosen, checks, column - 1)
                 below = below[: height - len(listed)]
-                width = min(width - column - 1, WIDEST_BESIDE) - MARGIN
-                lesson = challenge_rows.lesson_below(chosen, width, height - len(picture))
                 picture += [row(" " * MARGIN, *each) for each in lesson]
             listed = side_by_side([*listed, *below], picture, column)
         else:
