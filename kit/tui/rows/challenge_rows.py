@@ -64,6 +64,8 @@ NEW: Final = " (new)"
 """After a medal that is better than those before."""
 MOST_TRIES: Final = 4
 """Checks that are listed."""
+LEAST_DETAILS: Final = 16
+"""Columns from which on something stands beside a board."""
 LEAST_TOLD: Final = 34
 """Columns from which on a check is listed with what was said of it."""
 NAME_COLUMNS: Final = 14
@@ -344,10 +346,13 @@ def _with_drawing(view: PuzzleView, rows: Sequence[Row], width: int, height: int
     """A board with the drawing of it, if it has one, else with what fits there, beside its table."""
     table, rest = _table_and_rest(rows)
     column = max(map(row_width, table), default=0) + GAP
-    right = view.board.drawing(width - column, max(len(table), height - len(rest)), view.glyphs)
+    beside = width - column
+    if beside < LEAST_DETAILS:
+        return [*table, *rest]
+    right = view.board.drawing(beside, max(len(table), height - len(rest)), view.glyphs)
     if not right:
-        details = view.details(width - column, tries_rows(view.checks, LEAST_TOLD - 1))
-        right = _stacked(details, width - column, len(table) + 1)[1:]
+        details = view.details(beside, tries_rows(view.checks, LEAST_TOLD - 1))
+        right = _stacked(details, beside, len(table) + 1)[1:]
     return [*(side_by_side(table, right, column) if right else table), *rest]
 
 
