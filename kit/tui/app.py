@@ -18,12 +18,16 @@ from kit.render.palettes import COLOR_SCHEMES
 from kit.tui.input.drive import ModeName
 from kit.tui.input.driver import KeyDriver
 from kit.tui.late_timers import fire_late_timers
+from kit.tui.paper_filter import PaperFilter
 from kit.tui.terminal import LEAST_SIZE, TerminalDecision
 from kit.tui.theme import Theme, text_colors, textual_theme
 from kit.tui.widgets.text_rows import ASCII_ONLY
 
 FAINT: Final = DimFilter(0.68)
 """Faint texts of a theme keep two thirds of their contrast with the paper; Textual's half is hard to read on a light one."""
+
+
+PAPER: Final = PaperFilter()
 
 
 class KitApp(App[None]):
@@ -81,8 +85,11 @@ class KitApp(App[None]):
         self.theme = f"kit-{name}"
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Textual's own, with a fainter look that can still be read."""
-        return [FAINT if isinstance(each, DimFilter) else each for each in super().get_line_filters()]
+        """Textual's own, with a fainter look and the terminal's own colours so that they can be read."""
+        terminal = self.kit_theme.terminal
+        is_paper = terminal.ansi and terminal.colour.value != "none" and terminal.theme_name.value == "light"
+        filters = [FAINT if isinstance(each, DimFilter) else each for each in super().get_line_filters()]
+        return [*filters, PAPER] if is_paper else filters
 
     @work(exclusive=True, group="palette")
     async def action_palette(self) -> None:

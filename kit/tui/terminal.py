@@ -237,17 +237,21 @@ def _colour(environ: Mapping[str, str], term: str, wishes: TerminalOptions) -> R
 
 
 def _theme_name(environ: Mapping[str, str], colour: Colour) -> ReasonedValue[ThemeName]:
-    if colour in ("none", "ansi16"):
-        return ReasonedValue("terminal", "Themes need 256 colours.")
+    """Of 16 colours only whether they stand on a light background: they are the terminal's own."""
+    own: ReasonedValue[ThemeName] = ReasonedValue("terminal", "Themes need 256 colours.")
+    if colour == "none":
+        return own
     asked = environ.get(THEME_VARIABLE, "")
-    for name in THEME_CHOICES[1:]:
+    for name in ("light",) if colour == "ansi16" else THEME_CHOICES[1:]:
         if name == asked:
             return ReasonedValue(name, f"{THEME_VARIABLE} or --theme is {name}.")
     # rxvt's variable, set by others too: the numbers of foreground and background among the 16 colours.
     background = environ.get("COLORFGBG", "").rpartition(";")[2]
     if background in ("7", "15"):
         return ReasonedValue("light", f"COLORFGBG is {environ['COLORFGBG']}: a light background.")
-    return ReasonedValue("dark", "No setting says that the background is light.")
+    return (
+        own if colour == "ansi16" else ReasonedValue("dark", "No setting says that the background is light.")
+    )
 
 
 def _remote(environ: Mapping[str, str]) -> ReasonedValue[bool]:

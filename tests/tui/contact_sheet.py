@@ -38,6 +38,8 @@ FAINT: Final = 0.6
 """How much of its colour faint text keeps."""
 BACKGROUNDS: Final = {"dark": ((18, 18, 22), (208, 208, 208)), "light": ((252, 251, 247), (40, 40, 44))}
 """Background and foreground of the terminal."""
+FOREGROUND_AND_BACKGROUND: Final = {"dark": "15;0", "light": "0;15"}
+"""As a terminal tells them."""
 ANSI: Final = {
     "black": (0, 0, 0),
     "red": (205, 49, 49),
@@ -160,7 +162,7 @@ class FaintScreen(pyte.Screen):
 
 
 def picture_of(
-    visit: ScreenVisit, columns: int, rows: int, color: str, theme: str | None, home: Path
+    visit: ScreenVisit, columns: int, rows: int, color: str, background: str, home: Path
 ) -> pyte.Screen:
     """The kit's screen after the visit's keys, as pyte holds it."""
     screen = FaintScreen(columns, rows)
@@ -174,10 +176,9 @@ def picture_of(
             "HOME": str(home),
             "KIT_WORKSPACE": str(home / "robot-kit"),
             "KIT_COLOR": color,
+            "COLORFGBG": FOREGROUND_AND_BACKGROUND[background],
         }
-        if theme:
-            environment["KIT_THEME"] = theme
-        for name in ("NO_COLOR", "COLORTERM", "SSH_CONNECTION", "TMUX"):
+        for name in ("NO_COLOR", "KIT_THEME", "COLORTERM", "SSH_CONNECTION", "TMUX"):
             environment.pop(name, None)
         os.execve(sys.executable, arguments, environment)
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
@@ -424,8 +425,7 @@ def main() -> None:
                 columns, rows = (int(part) for part in size.split("x"))
                 for color in options.color:
                     for background in options.background:
-                        theme = background if color in ("256", "true") else None
-                        screen = picture_of(VISITS[name], columns, rows, color, theme, Path(home))
+                        screen = picture_of(VISITS[name], columns, rows, color, background, Path(home))
                         pictures.append((f"{name} {size} {color} {background}", draw(screen, background)))
             across = max(1, len(options.background) * len(options.color))
             sheet(pictures, across).save(options.out / f"{name}.png")

@@ -122,6 +122,9 @@ def test_colour(environ: dict[str, str], wish: str | None, colour: str, why: str
     ("environ", "theme"),
     [
         (XTERM, "terminal"),
+        (XTERM | {"COLORFGBG": "0;15"}, "light"),
+        (XTERM | {"COLORFGBG": "15;0"}, "terminal"),
+        (XTERM | {"COLORFGBG": "0;15", "NO_COLOR": "1"}, "terminal"),
         (XTERM | {"COLORTERM": "truecolor"}, "dark"),
         (XTERM | {"COLORTERM": "truecolor", "COLORFGBG": "0;15"}, "light"),
         (XTERM | {"COLORTERM": "truecolor", "COLORFGBG": "15;0"}, "dark"),
