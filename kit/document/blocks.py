@@ -106,6 +106,12 @@ class Picture:
     is_diagram: bool = False
     """Whether its lines and arrows of ``-``, ``|``, ``+`` and ``>`` are joined where it is looked at."""
 
+    @staticmethod
+    def of_diagram(lines: Iterable[str], indent: int = 2) -> tuple[Picture, ...]:
+        """A diagram as a block, or nothing where there are no lines."""
+        drawn = tuple(lines)
+        return (Picture(drawn, indent, is_diagram=True),) if drawn else ()
+
 
 @dataclass(frozen=True, slots=True)
 class Choice:

@@ -52,8 +52,11 @@ class GlossaryTerm:
         """The term with its lesson, and the meaning below, indented, with its picture where it has one."""
         named = " or ".join(self.spellings)
         tail = f"  (lesson {lesson_number(self.lesson)})"
-        picture = (Picture(self.picture, indent=6, is_diagram=True),) if self.picture else ()
-        return (Text(named, Tone.BOLD, tail=tail), Text(self.meaning, indent=4, is_tight=True), *picture)
+        return (
+            Text(named, Tone.BOLD, tail=tail),
+            Text(self.meaning, indent=4, is_tight=True),
+            *Picture.of_diagram(self.picture, 6),
+        )
 
 
 def read_glossary(folder: Path | None = None) -> tuple[GlossaryTerm, ...]:

@@ -301,8 +301,7 @@ class LessonDialogue(Dialogue):
         if self.has_ended:
             return ()
         blocks: list[Block] = [Text(f"Goal: {self.step.goal}", is_tight=True)]
-        if self.step.picture:
-            blocks.append(Picture(tuple(self.step.picture.splitlines()), is_diagram=True))
+        blocks += Picture.of_diagram(self.step.picture.splitlines())
         if self.step.graph is not None:
             blocks.append(Picture(tuple(graph_rows(self.step.graph, at_end=not self.step.options)), indent=0))
         return blocks

@@ -154,9 +154,7 @@ class QuizDialogue(Dialogue):
         return shown
 
     def _question_blocks(self, item: QuizItem) -> list[Block]:
-        shown: list[Block] = [Text(item.question)]
-        shown += [Picture(tuple(item.picture), is_diagram=True)] if item.picture else []
-        return [*shown, *self._options(item)]
+        return [Text(item.question), *Picture.of_diagram(item.picture), *self._options(item)]
 
     def possible_blocks(self) -> Sequence[Sequence[Block]]:
         item = self.item
@@ -206,8 +204,8 @@ class QuizDialogue(Dialogue):
         if pictured is None:
             return [about_lesson(lesson)]
         title = f"lesson {lesson.number}, step {pictured.number}: {pictured.title}"
-        picture = Picture(tuple(pictured.picture.splitlines()), is_diagram=True)
-        return [about_lesson(lesson), Panel(title, (picture,), is_below=True)]
+        picture = Picture.of_diagram(pictured.picture.splitlines())
+        return [about_lesson(lesson), Panel(title, picture, is_below=True)]
 
     def _taught_by(self, item: QuizItem) -> tuple[Lesson, LessonStep] | None:
         """The lesson and the step that teach the answer to a question."""
@@ -237,7 +235,7 @@ class QuizDialogue(Dialogue):
         ):
             return None
         lesson, step = taught
-        picture = [Picture(tuple(step.picture.splitlines()), is_diagram=True)] if step.picture else []
+        picture = Picture.of_diagram(step.picture.splitlines())
         title = f"lesson {lesson.number}, step {step.number}: {step.title}"
         file = None if step.exercise is None else Path(step.exercise.file)
         return Panel(title, (*picture, Marked(fill_in_paths(step.text, file))))

@@ -192,6 +192,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         """Rows of the words in which what was said begins, and what was said last; 0: nothing was."""
         self._code_width: tuple[tuple[str, int], int] = (("", 0), 0)
         """Columns that the code of a step's text needs on a page, for which both are known."""
+        self._backdrop = ""
+        """What the world beside the words is, where it only stands there."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -235,7 +237,6 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self._rows("file").show_all(file)
         self._rows("status").show_all(status)
         self._rows("heading").show([lesson_rows.heading(dialogue.session.lesson_progress, step, width)])
-        self._show_title()
         words = self._word_rows()
         # With the empty row before it.
         answer = max((len(self._placed_rows(each)) + 1 for each in dialogue.possible_answers()), default=0)
@@ -255,12 +256,13 @@ class LessonScreen(DialogueScreen, DriveScreen):
         has_work = work is not None and not work.by_hand and (is_roomy or not self._is_editing)
         lines = work.edited_lines() if work is not None and has_work else ()
         moves = self.stage.scene if dialogue.has_scene and (is_roomy or not drawn) else None
-        is_backdrop = moves is None and is_roomy and self._opens_backdrop(has_file=bool(lines))
+        self._backdrop = self._open_backdrop(has_file=bool(lines)) if moves is None and is_roomy else ""
+        self._show_title()
         content = LessonContent(
             words,
             question,
             shown,
-            moves=self.stage.world if is_backdrop else moves,
+            moves=self.stage.world if self._backdrop else moves,
             # Not all at once, where there is little room.
             moves_rows=self._playback_rows,
             first_words=max(self._said_row, answer, len(words) - self._said_row),
@@ -281,17 +283,22 @@ class LessonScreen(DialogueScreen, DriveScreen):
         dialogue.is_code_cut = has_work and self._page.is_file_cut
         self._show_keys()
 
-    def _opens_backdrop(self, *, has_file: bool) -> bool:
-        """Opens a world that stands still beside the words, where there is one; says whether: the one in which the exercise's
-        program will drive, or for a step without anything that moves the one that was driven in last."""
+    def _open_backdrop(self, *, has_file: bool) -> str:
+        """Opens a world that stands still beside the words, where there is one, and says which it is: the one in which the
+        exercise's program will drive, or for a step without anything that moves the one that was driven in last."""
         work, step = self.dialogue.work, self.dialogue.step
         scene = work.scene if has_file and work is not None else None
+        caption = "where your program drives, before its start"
         if step.exercise is None and step.graph is None and not self.dialogue.has_ended:
             before = self.dialogue.session.lesson.steps[: step.number - 1]
-            scene = next((each.scene for each in reversed(before) if each.scene is not None), None)
-        if scene is not None and self.stage.world.scene != scene:
+            last = next((each for each in reversed(before) if each.scene is not None), None)
+            if last is not None:
+                scene, caption = last.scene, f"the world of step {last.number}, before its start"
+        if scene is None:
+            return ""
+        if self.stage.world.scene != scene:
             self.stage.world.open(scene, still=True)
-        return scene is not None
+        return caption
 
     def _panels(self) -> list[Panel]:
         """What a large screen has besides: the lesson's steps, what the check of this one looks at, until it has where there is
@@ -324,10 +331,10 @@ class LessonScreen(DialogueScreen, DriveScreen):
         before = self.dialogue.session.lesson.steps[: here.number - 1]
         read = next((each for each in reversed(before) if each.kind is StepKind.EXPLAIN), None)
         if read is not None:
-            picture: list[Block] = (
-                [Picture(tuple(read.picture.splitlines()), is_diagram=True)] if read.picture else []
+            told: tuple[Block, ...] = (
+                *Picture.of_diagram(read.picture.splitlines()),
+                Marked(self.dialogue.with_paths(read.text)),
             )
-            told = (*picture, Marked(self.dialogue.with_paths(read.text)))
             panels.append(Panel(f"step {read.number}: {read.title}", told))
         return panels
 
@@ -379,7 +386,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         dialogue, scene, remark = self.dialogue, self.stage.scene, self.turn.remark
         if remark is not None and not self._has_status_row:
             return row((remark.text, remark.tone))
-        state = ""
+        state = self._backdrop
         if dialogue.has_scene:
             state = scene.caption
             if dialogue.is_waiting and scene.is_open:

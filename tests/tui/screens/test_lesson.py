@@ -31,7 +31,7 @@ from tests.tui.lesson_folder import STILL, TURNING, write_lessons, write_solutio
 from tests.tui.lesson_stage import ROBOT, Scene, rows, seen, stage, text, until
 from tests.tui.tape import painted
 
-COLOUR, CORNER = 4, 5
+WHY, COLOUR, CORNER = 3, 4, 5
 """Numbers of the steps with exercises."""
 
 
@@ -585,6 +585,22 @@ def test_few_rows_below_the_words_show_where_the_program_begins(student: Student
         await seen(pilot, begins)
 
     stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_a_world_that_stands_beside_a_step_says_which_steps_it_is(student: Student) -> None:
+    student.goes_to(WHY)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "the world of step 1")
+        assert pilot.app.screen.query_one(LessonSceneView).display
+
+    async def small(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Read: Why")
+        assert "the world of step" not in text(pilot), "there is none beside the words"
+
+    stage(student.screen, scene, size=(200, 50))
+    stage(student.screen, small)
 
 
 LONG_LINE = f"LONGEST = {'7 + ' * 16}7 + 7"
