@@ -96,7 +96,11 @@ def plain_text(row: StyledRow) -> str:
 
 def _wrap_block(block: MarkupBlock, width: int) -> list[StyledRow]:
     if block.kind == "code":
-        return [(StyledText(BLOCK_INDENT + line, TextStyle.CODE),) for line in block.lines]
+        spare = width - max(map(len, block.lines), default=0)
+        indent = (
+            BLOCK_INDENT[:spare] if spare >= 0 else BLOCK_INDENT
+        )  # rather than that a line is broken for it
+        return [(StyledText(indent + line, TextStyle.CODE),) for line in block.lines]
     first, rest = ("- ", "  ") if block.kind == "bullet" else ("", "")
     return _wrap_styled(styled_pieces(block), width, first, rest)
 

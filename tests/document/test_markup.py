@@ -28,6 +28,13 @@ def test_paragraphs_lists_and_code() -> None:
     ]
 
 
+def test_code_that_fits_only_without_its_indentation_gives_it_up() -> None:
+    text = "    if a:\n        f(a)  # 1"
+    assert shown(text, 17) == ["    if a:", "        f(a)  # 1"]
+    assert shown(text, 14) == [" if a:", "     f(a)  # 1"]
+    assert shown(text, 12) == ["    if a:", "        f(a)  # 1"], "a line is broken all the same"
+
+
 def test_styles_survive_wrapping() -> None:
     (first, second) = wrap_blocks(parse_markup("aaa `bb cc` **dd ee** ff"), 12)
     assert [(piece.text, piece.style) for piece in first] == [
