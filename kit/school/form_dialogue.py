@@ -153,7 +153,9 @@ class FormDialogue(Dialogue):
                 each.group_text or each.text for each in session.form.questions_in_phase(later)
             )
             told = (Text(each, Tone.DIM, lead="-", hang=2, is_tight=True) for each in asked)
-            shown.append(Panel(f"asked {PHASE_LABELS[later]}", tuple(told), is_below=True))
+            # Each column has one of two: both below the question leave the other half blank, and are cut on a lower screen.
+            is_below = not any(each.is_below for each in shown)
+            shown.append(Panel(f"asked {PHASE_LABELS[later]}", tuple(told), is_below=is_below))
         return shown
 
     def _entry_of(self, number: int, question: SurveyQuestion) -> tuple[Block, ...]:

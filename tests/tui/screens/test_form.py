@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 from kit.school.form_answers import FormAnswers
 from kit.school.form_dialogue import FormDialogue
 from kit.school.form_reading import read_form
-from kit.school.form_session import FormSession
+from kit.school.form_session import PHASE_LABELS, FormSession
 from kit.school.progress import EventKind, ProgressJournal
 from kit.school.survey import AnswerShape, AnswerValue, SurveyPhase
 from kit.tui.screens.dialogs import MessageDialog
@@ -231,6 +231,15 @@ def test_every_question_fits_and_nothing_jumps_when_an_answer_is_chosen(
             await pilot.press("enter")
 
     play(tmp_path / str(size[0]), act, phase=SurveyPhase.AFTER, size=size)
+
+
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)], ids=str)
+def test_a_large_screen_says_what_each_later_part_asks(size: tuple[int, int], tmp_path: Path) -> None:
+    async def act(pilot: Pilot[None], session: FormSession) -> None:
+        later = (SurveyPhase.AFTER, SurveyPhase.QUIZZED)
+        assert all(f"── asked {PHASE_LABELS[each]} ─" in text(pilot) for each in later)
+
+    play(tmp_path, act, size=size)
 
 
 def test_ascii_alone(tmp_path: Path) -> None:
