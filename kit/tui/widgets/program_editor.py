@@ -484,9 +484,12 @@ class ProgramEditor(Vertical):
         name.show([row((self._program.file.name, "bold"), (changed, "warn"))])
         keys = row() if self.area.has_focus else key_row(("^E", "edit"))
         width = max(20, self.size.width - 1)
+        failure = self._failure
+        if failure and not self.is_saved:  # what is typed since may have mended it
+            failure = row((f"as it was saved: {row_text(failure)}", "dim"))
         said = [
             row((line, each[-1][1]))
-            for each in (self._notice, self._failure)
+            for each in (self._notice, failure)
             if each
             for line in wrap(row_text(each), width)
         ]

@@ -43,7 +43,10 @@ def test_what_is_saved_and_is_no_python_is_told_with_its_line(tmp_path: Path) ->
         await seen(pilot, "speed = = 1")
         await pilot.press("#", "ctrl+s")
         await seen(pilot, "line 2: invalid syntax")
-        await pilot.press("down", "home", "#", "ctrl+s")
+        assert "as it was saved" not in text(pilot)
+        await pilot.press("down", "home", "#")
+        await seen(pilot, "as it was saved: line 2: invalid syntax")
+        await pilot.press("ctrl+s")
         await until(pilot, lambda: "invalid syntax" not in text(pilot), "it is Python now")
 
     stage(lambda theme: FileEditorScreen(ProgramFile(file), 1, ""), scene)
