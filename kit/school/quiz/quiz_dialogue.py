@@ -13,7 +13,18 @@ from kit.dialogue.dialogue import Dialogue, DialogueAction, Panel, help_action, 
 from kit.dialogue.effects import Effect, Leave
 from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.dialogue.shared_actions import ACTIONS
-from kit.document.blocks import Block, Choice, Choices, KeyLine, Marked, Picture, Text, Tone
+from kit.document.blocks import (
+    Block,
+    Choice,
+    Choices,
+    KeyLine,
+    Marked,
+    Picture,
+    Text,
+    Tone,
+    ToneText,
+    labelled_table,
+)
 from kit.school.lessons.glossary import glossary_action, lesson_words
 from kit.school.lessons.lesson_text import about_lesson
 from kit.school.lessons.reading import find_lesson
@@ -195,17 +206,29 @@ class QuizDialogue(Dialogue):
         )
 
     def _lesson_panels(self, item: QuizItem) -> list[Panel]:
-        """What the lesson of a question is about, and a picture of another step than the one that teaches the answer."""
+        """What the lesson of a question is about, and a picture of another step than the one that teaches the answer; all its
+        steps once the answer is told, which their titles may give away."""
         taught = self._taught_by(item)
         if taught is None:
             return []
         lesson, step = taught
+        shown = [about_lesson(lesson)]
         pictured = next((each for each in lesson.steps if each.picture and each is not step), None)
-        if pictured is None:
-            return [about_lesson(lesson)]
-        title = f"lesson {lesson.number}, step {pictured.number}: {pictured.title}"
-        picture = Picture.of_diagram(pictured.picture.splitlines())
-        return [about_lesson(lesson), Panel(title, picture, is_below=True)]
+        if pictured is not None:
+            title = f"lesson {lesson.number}, step {pictured.number}: {pictured.title}"
+            picture = Picture.of_diagram(pictured.picture.splitlines())
+            shown.append(Panel(title, picture, is_below=True))
+        if self.stage is QuizStage.TOLD:
+            rows = (
+                (
+                    ToneText(str(each.number), Tone.DIM),
+                    ToneText(each.title, Tone.BOLD if each is step else Tone.PLAIN),
+                )
+                for each in lesson.steps
+            )
+            steps = (labelled_table(rows, is_tight=True),)
+            shown.append(Panel(f"steps of lesson {lesson.number}", steps, is_below=True))
+        return shown
 
     def _taught_by(self, item: QuizItem) -> tuple[Lesson, LessonStep] | None:
         """The lesson and the step that teach the answer to a question."""

@@ -262,6 +262,9 @@ def test_a_large_screen_shows_the_lessons_scene_and_then_the_step_that_teaches_t
         assert step.title not in flat(screen)
         await pilot.press("1", "4")
         await seen(pilot, step.title)
+        told = [row_text(each) for each in panel_rows(quiz(screen).panels(), 100, 1000)]
+        listed = "\n".join(told)
+        assert all(each.title in listed for each in kit_lesson(folder).steps), "all, where there is room"
 
     play(scene, progress, lesson="20-q-learning", size=size)
 
