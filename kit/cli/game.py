@@ -484,6 +484,7 @@ def _record_drive(
     """Records a drive, or a program's drives from all starts, and prints what it earned."""
     from kit.school.game.daily import DAILY_PREFIX
     from kit.school.game.drive_records import record_drive
+    from kit.school.game.ordinary_drives import ordinary_drives
     from kit.school.game.player_progress import BY_HAND
     from kit.school.game.references import reference_seconds
     from kit.tui.rows.drive_end_rows import REPLACES, RUN_OF_THE_DAY, how_it_ended
@@ -519,7 +520,8 @@ def _record_drive(
         click.echo(f"The board: {REPLACES}.")
     reference = reference_seconds(level)
     if reference is not None:
-        for each in ladder_rows(driver, reference, finish.seconds if finish.reached else None):
+        seconds = finish.seconds if finish.reached else None
+        for each in ladder_rows(driver, reference, seconds, ordinary_drives(level, [driver])):
             click.echo(row_text(each))
     for opened in record.unlocked:
         click.echo(f"Opened: {opened.title} ({opened.id}).")

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from itertools import groupby
 from typing import Final
 
 from kit.document.rows import Row, row
 from kit.school.game.drive_records import DriveRecord
+from kit.school.game.levels import GameLevel
 from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung, rung_in_reach
+from kit.school.game.ordinary_drives import NONE_MEASURED, ordinary_drives
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
 
@@ -24,13 +26,20 @@ LADDERS: Final = tuple(
 """The drivers, those together that have the same ladder."""
 HERE: Final = "\u25cf"
 """Where a drive stands on a ladder."""
+ORDINARY: Final = "┼"
+"""Where an ordinary driver stands."""
 
 
 def ladder_bar(
-    driver: DriverKind, reference: float, seconds: float | None, width: int, is_flawed: bool = False
+    driver: DriverKind,
+    reference: float,
+    seconds: float | None,
+    width: int,
+    is_flawed: bool = False,
+    ordinary: Mapping[DriverKind, float] = NONE_MEASURED,
 ) -> Row:
     """All rungs of a driver's ladder, as far apart as the logarithms of their times, and where a time stands among them; that of
-    a drive which gets bronze at best, before all others.
+    a drive which gets bronze at best, before all others. ``ordinary``: what ordinary drivers took on this level [s].
 
     >>> from kit.document.rows import row_text
     >>> row_text(ladder_bar(DriverKind.HAND, 10.0, 15.0, 30))
@@ -39,6 +48,8 @@ def ladder_bar(
     'B━━━━━━━━━━━━━━━━━S━━━━━━G━●MR'
     >>> row_text(ladder_bar(DriverKind.PROGRAM, 10.0, None, 13))
     'B──────S──GMR'
+    >>> row_text(ladder_bar(DriverKind.HAND, 10.0, None, 30, ordinary={DriverKind.HAND: 15.0}))
+    'B───────────┼─────S──────G──MR'
     """
     shares = SHARES[driver]
     widest = math.log(shares[Medal.BRONZE])
@@ -51,19 +62,26 @@ def ladder_bar(
     for rung in reversed(RUNGS):  # each has a column of its own
         places[rung] = min(column(shares[rung]), free)
         free = places[rung] - 1
-    here = -1
-    if seconds is not None and seconds <= medal_time(Medal.BRONZE, reference, driver):
+
+    def place(seconds: float, is_flawed: bool) -> int:
+        """The column of a time; -1: it earns nothing."""
+        if seconds > medal_time(Medal.BRONZE, reference, driver):
+            return -1
         missed = [
             place
             for medal, place in places.items()
             if seconds > medal_time(medal, reference, driver) or (is_flawed and medal > Medal.BRONZE)
         ]
-        here = min(  # before a rung that was missed by a hair
-            [column(seconds / reference), *(place - 1 for place in missed)]
-        )
+        # before a rung that was missed by a hair
+        return min([column(seconds / reference), *(each - 1 for each in missed)])
+
+    here = -1 if seconds is None else place(seconds, is_flawed)
     shown = [("━", "good") if each < here else ("─", "dim") for each in range(width)]
-    for medal, place in places.items():
-        shown[place] = (MEDAL_SIGNS[medal], MEDAL_STYLES[medal])
+    for each in ordinary.values():
+        if (at := place(each, is_flawed=False)) >= 0:
+            shown[at] = (ORDINARY, "")
+    for medal, at in places.items():
+        shown[at] = (MEDAL_SIGNS[medal], MEDAL_STYLES[medal])
     if here >= 0:
         shown[here] = (HERE, "bold")
     return tuple(
@@ -91,11 +109,11 @@ def ladder_letters() -> Row:
 
     >>> from kit.document.rows import row_text
     >>> row_text(ladder_letters())
-    ' ladder  B bronze  S silver  G gold  M master  R record'
+    ' ladder  B bronze  S silver  G gold  M master  R record  ┼ an ordinary driver'
     """
     parts = ((MEDAL_SIGNS[each], MEDAL_STYLES[each], each.title) for each in RUNGS)
     told = (part for sign, style, title in parts for part in ((f"  {sign} ", style), title))
-    return row((" ladder", "dim"), *told)
+    return row((" ladder", "dim"), *told, f"  {ORDINARY} an ordinary driver")
 
 
 def ladder_words(driver: DriverKind, reference: float, seconds: float | None) -> str:
@@ -105,11 +123,17 @@ def ladder_words(driver: DriverKind, reference: float, seconds: float | None) ->
     return f"  {asked}" if seconds is None else f"  {seconds:.2f} s{', ' if asked else ''}{asked}"
 
 
-def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> list[Row]:
+def ladder_rows(
+    driver: DriverKind,
+    reference: float,
+    seconds: float | None,
+    ordinary: Mapping[DriverKind, float] = NONE_MEASURED,
+) -> list[Row]:
     """A ladder with the times of its rungs below it, and how far the next one is."""
+    bar = ladder_bar(driver, reference, seconds, RESULT_BAR, ordinary=ordinary)
     times = [f"{medal.title} {medal_time(medal, reference, driver):.2f}" for medal in RUNGS]
     rows = [
-        row("   ", *ladder_bar(driver, reference, seconds, RESULT_BAR), (f"  {driver.phrase}", "dim")),
+        row("   ", *bar, (f"  {driver.phrase}", "dim"), *_named(ordinary)),
         row((f"   {'  '.join(times)} s", "dim")),
     ]
     rung = next_rung(driver, reference, seconds)
@@ -117,6 +141,10 @@ def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> 
         missing = seconds - medal_time(rung, reference, driver)
         rows.append(row("   next ", (f"{rung.title}, {missing:.2f} s away", "bold")))
     return rows
+
+
+def _named(ordinary: Mapping[DriverKind, float]) -> Row:
+    return row(*((f"  {ORDINARY} ordinary {taken:.2f} s", "dim") for taken in ordinary.values()))
 
 
 def in_reach_row(driver: DriverKind, reference: float, seconds: float, is_flawed: bool) -> Row:
@@ -139,17 +167,14 @@ def rung_rows(
     *,
     lost_after: float | None = None,
     is_flawed: bool = False,
+    ordinary: Mapping[DriverKind, float] = NONE_MEASURED,
 ) -> list[Row]:
     """A row for each rung, the highest first, with its time, and where a time stands among them with how far it is from each.
     ``lost_after``: the time of a drive that goes on, for which some rungs are lost already [s]; ``is_flawed``: whether it gets
-    bronze at best."""
-    rows = []
-    is_placed = seconds is None
-    for medal in reversed(RUNGS):
+    bronze at best; ``ordinary``: what ordinary drivers took on this level [s], a row each."""
+    timed = []
+    for medal in RUNGS:
         limit = medal_time(medal, reference, driver)
-        if seconds is not None and not is_placed and seconds <= limit:
-            rows.append(_here_row(seconds))
-            is_placed = True
         apart = ""
         if seconds is not None:
             apart = (
@@ -159,15 +184,19 @@ def rung_rows(
             )
         is_earned = seconds is not None and seconds <= limit
         is_lost = lost_after is not None and (lost_after > limit or (is_flawed and medal > Medal.BRONZE))
-        rows.append(
-            row(
-                (f"{MEDAL_SIGNS[medal]} ", "dim" if is_lost else MEDAL_STYLES[medal]),
-                (f"{medal.title:<8}", "dim" if is_lost else "good" if is_earned else ""),
-                (f" {limit:8.2f} s", "dim" if is_lost else ""),
-                (apart, "dim"),
-            )
+        shown = row(
+            (f"{MEDAL_SIGNS[medal]} ", "dim" if is_lost else MEDAL_STYLES[medal]),
+            (f"{medal.title:<8}", "dim" if is_lost else "good" if is_earned else ""),
+            (f" {limit:8.2f} s", "dim" if is_lost else ""),
+            (apart, "dim"),
         )
-    return rows if is_placed or seconds is None else [*rows, _here_row(seconds)]
+        timed.append((limit, 1, shown))
+    for each, taken in ordinary.items():
+        name = "ordinary" if len(ordinary) == 1 else each.value
+        timed.append((taken, 0, row(f"{ORDINARY} {name:<8} {taken:8.2f} s")))
+    if seconds is not None:
+        timed.append((seconds, 0, _here_row(seconds)))
+    return [shown for *_, shown in sorted(timed, key=lambda each: each[:2])]
 
 
 def _here_row(seconds: float) -> Row:
@@ -175,17 +204,24 @@ def _here_row(seconds: float) -> Row:
 
 
 def ladder_of_drive(
-    finish: RaceFinish, record: DriveRecord, driver: DriverKind, reference: float | None, *, is_tall: bool
+    level: GameLevel,
+    finish: RaceFinish,
+    record: DriveRecord,
+    driver: DriverKind,
+    reference: float | None,
+    *,
+    is_tall: bool,
 ) -> list[Row]:
     """The ladder of a drive that has ended; none where it earns nothing. ``is_tall``: with a row for each rung."""
     if reference is None or record.is_shipped:
         return []
     seconds = finish.seconds if finish.reached else None
+    ordinary = ordinary_drives(level, [driver])
     if is_tall:
         rungs = [row("   ", *each) for each in rung_rows(driver, reference, seconds)]
-        rows = [row((f"   ladder {driver.phrase}", "title")), *rungs]
+        rows = [row((f"   ladder {driver.phrase}", "title"), *_named(ordinary)), *rungs]
     else:
-        rows = ladder_rows(driver, reference, seconds)
+        rows = ladder_rows(driver, reference, seconds, ordinary)
     unharmed = medal_of(replace(finish, collisions=0, is_apart=False), reference, driver)
     if unharmed > record.medal:
         bumps = "without the bump" if finish.collisions == 1 else "without the bumps"

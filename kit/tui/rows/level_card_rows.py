@@ -11,6 +11,7 @@ from kit.document.rows import Row, row, row_width, side_by_side
 from kit.plain_text import wrap
 from kit.school.game.ghosts import Ghost, Split, compare_tracks
 from kit.school.game.levels import GameLevel
+from kit.school.game.ordinary_drives import ordinary_drives
 from kit.school.game.player_progress import ExtraRule, offered_rules
 from kit.school.game.race import DriverKind
 from kit.tui.rows.drive_end_rows import sector_rows
@@ -74,7 +75,7 @@ def level_card(
     kept already. ``standing``: of a drive that goes on or is to begin, whose place on the ladder is shown."""
     if width < LEAST_WIDTH:  # the screen has no size yet
         return {}
-    ladder, rungs = ([], []) if reference is None else _ladder_rows(driver, reference, width, standing)
+    ladder, rungs = ([], []) if reference is None else _ladder_rows(level, driver, reference, width, standing)
     stars = [] if reference is None else star_rows(level, kept, width)
     rows = (
         [ruled_title("level", width), *(row(line) for line in wrap(level.story, width))],
@@ -95,16 +96,20 @@ def level_card(
 
 
 def _ladder_rows(
-    driver: DriverKind, reference: float, width: int, standing: Standing | None
+    level: GameLevel, driver: DriverKind, reference: float, width: int, standing: Standing | None
 ) -> tuple[list[Row], list[Row]]:
     """The ladder, on it a drive that goes on with the best medal that it can still earn; and its rungs with their times."""
-    ladder, rungs = [ruled_title("ladder", width, driver.phrase)], rung_rows(driver, reference)
+    ordinary = ordinary_drives(level, [driver])
+    ladder = [ruled_title("ladder", width, driver.phrase)]
+    rungs = rung_rows(driver, reference, ordinary=ordinary)
     seconds = None if standing is None else standing.seconds or None
     is_flawed = standing is not None and standing.is_flawed
-    ladder.append(row(*ladder_bar(driver, reference, seconds, min(width, RESULT_BAR), is_flawed)))
+    ladder.append(row(*ladder_bar(driver, reference, seconds, min(width, RESULT_BAR), is_flawed, ordinary)))
     if standing is not None:
         ladder.append(in_reach_row(driver, reference, *standing))
-        rungs = rung_rows(driver, reference, lost_after=standing.seconds, is_flawed=is_flawed)
+        rungs = rung_rows(
+            driver, reference, lost_after=standing.seconds, is_flawed=is_flawed, ordinary=ordinary
+        )
     if standing is not None and width >= TWO_RUNGS:
         half = (len(rungs) + 1) // 2
         rungs = side_by_side(rungs[:half], rungs[half:], width // 2)

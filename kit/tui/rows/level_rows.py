@@ -11,6 +11,7 @@ from kit.plain_text import wrap
 from kit.school.game.daily import DAILY_PREFIX
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
 from kit.school.game.medal import RUNGS, Medal
+from kit.school.game.ordinary_drives import ordinary_drives
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of, next_belt
 from kit.school.game.race import STUCK_TIME, DriverKind, RaceFinish
 from kit.school.game.starts import SHIFT_M, SHIFT_RAD, STARTS
@@ -103,7 +104,13 @@ def world_levels(
         bar = (
             ()
             if reference is None or not is_whole
-            else ladder_bar(driver, reference, each.best_times.get(driver), LIST_BAR)
+            else ladder_bar(
+                driver,
+                reference,
+                each.best_times.get(driver),
+                LIST_BAR,
+                ordinary=ordinary_drives(level, [driver]),
+            )
         )
         rows.append(
             row(
@@ -135,10 +142,11 @@ def about(progress: LevelProgress, reference: float | None, width: int, room: in
         standing = []
         for drivers in LADDERS:
             driver = min(drivers, key=lambda each: best.get(each, math.inf))
+            ordinary = ordinary_drives(level, [driver] if driver in best else drivers)
             standing.append(
                 row(
                     (f"{', '.join(each.value for each in drivers):<{LADDER_LABEL}}", "dim"),
-                    *ladder_bar(driver, reference, best.get(driver), bar),
+                    *ladder_bar(driver, reference, best.get(driver), bar, ordinary=ordinary),
                     ladder_words(driver, reference, best.get(driver)),
                 )
             )

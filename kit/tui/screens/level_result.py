@@ -129,7 +129,7 @@ class DriveResultScreen(EditsFile, ModalScreen[Wish]):
         self._workspace = workspace
         finish, record = result.finish, result.record
         rungs, ladder = (
-            ladder_of_drive(finish, record, result.driver, result.reference, is_tall=is_tall)
+            ladder_of_drive(result.level, finish, record, result.driver, result.reference, is_tall=is_tall)
             for is_tall in (True, False)
         )
         self._told = DriveEnd(

@@ -27,6 +27,7 @@ from kit.school.game.daily import DAILY_PREFIX, daily_level, streak, today
 from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts, load_unfinished
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import Medal
+from kit.school.game.ordinary_drives import ordinary_drives
 from kit.school.game.player_progress import (
     BELTS,
     BY_HAND,
@@ -46,7 +47,7 @@ from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.ladder_rows import drivers_by_ladder, ladder_letters, rung_rows
+from kit.tui.rows.ladder_rows import ORDINARY, drivers_by_ladder, ladder_letters, rung_rows
 from kit.tui.rows.level_card_rows import COLUMN, best_splits, level_card, star_line, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.rows.progress_marks import share_bar
@@ -77,6 +78,7 @@ CARD_PARTS: Final = ("stars", "rivals", "sectors")
 """Of the card, below the rungs of each driver: the rest is said below the list."""
 NOTES: Final = (
     ("B S G M R", "bronze, silver, gold, master, record: each driver has a ladder"),
+    (ORDINARY, "where an ordinary hand, a tidy program, an agent of the kit's preset stands on it"),
     (
         "*",
         "a star for an extra rule that a drive has kept: no bump, no stop, one sensor, few lines, few training steps",
@@ -359,7 +361,9 @@ class LevelsScreen(RowsScreen[None]):
         ladders = [
             [
                 ruled_title("ladder", width, f"by {' or '.join(each.value for each in drivers)}"),
-                *rung_rows(drivers[0], reference, best.get(drivers[0])),
+                *rung_rows(
+                    drivers[0], reference, best.get(drivers[0]), ordinary=ordinary_drives(level, drivers)
+                ),
             ]
             for drivers in drivers_by_ladder(best)
             if reference is not None

@@ -6,7 +6,7 @@
 ``keys`` presses the keys of a hand with ordinary skill, and the best of its five tries counts; ``laser`` is a tidy program
 without a map, ``map`` one that follows points read off the map, ``agent`` is trained for the level by the kit's preset, and
 ``tape`` turns to the level's own heading and plays the commands of the reference drive back. The drives stand in
-``measured_drivers.csv``; the medals are not in it, but derived from the bars as they are now.
+``lessons/measured_drivers.csv``, of which the ladders show all but the tape; the medals are not in it, but derived from the bars as they are now.
 """
 
 from __future__ import annotations
@@ -25,10 +25,12 @@ from typing import Final
 from kit.controllers import find_controller
 from kit.run.recording import Recording
 from kit.run.session import Session
+from kit.school.game import ordinary_drives
 from kit.school.game.drive_commands import DriveCommand
 from kit.school.game.league import house
 from kit.school.game.levels import TURN_RATE, GameLevel, all_levels
 from kit.school.game.medal import Medal, medal_of
+from kit.school.game.ordinary_drives import MEASURED_FILE
 from kit.school.game.race import (
     DriverKind,
     RaceFinish,
@@ -40,20 +42,15 @@ from kit.school.game.race import (
 )
 from kit.school.game.references import CommandPlayer, find_drive, reference_seconds
 from kit.school.game.starts import OWN_SEED, draw_seeds, scenario_from
+from kit.school.lessons.reading import lessons_folder
 from kit.sim.simulation import STEP_SIZE_S
 from tests.school.game.level_agents import train_agent
 from tests.school.game.map_plans import write_program
 from tests.school.game.ordinary import REACTION_TICKS, KeyPresser
 
 LASER_PROGRAM: Final = house.PROGRAM
-MEASURED: Final = Path(__file__).with_name("measured_drivers.csv")
-DRIVERS: Final = {
-    "keys": DriverKind.HAND,
-    "laser": DriverKind.PROGRAM,
-    "map": DriverKind.PROGRAM,
-    "agent": DriverKind.AGENT,
-    "tape": DriverKind.PROGRAM,
-}
+MEASURED: Final = lessons_folder() / MEASURED_FILE
+DRIVERS: Final = {**ordinary_drives.MEASURED, "tape": DriverKind.PROGRAM}
 TRIES: Final = (16, 18, 20, 22, 24)
 """A hand drives so often, and is not equally quick each time: its delay, in ticks."""
 LONGEST: Final = 3.0

@@ -7,11 +7,21 @@ import pytest
 from kit.document.rows import Row, row_width
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel
-from kit.school.game.medal import RUNGS
+from kit.school.game.medal import RUNGS, Medal, medal_of
+from kit.school.game.ordinary_drives import ordinary_drives
 from kit.school.game.player_progress import ExtraRule
-from kit.school.game.race import DriverKind
+from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.references import find_drive, reference_recording, reference_seconds
-from kit.tui.rows.ladder_rows import ABOUT_BAR, HERE, LIST_BAR, RESULT_BAR, ladder_bar
+from kit.tui.rows.ladder_rows import (
+    ABOUT_BAR,
+    HERE,
+    LADDERS,
+    LIST_BAR,
+    ORDINARY,
+    RESULT_BAR,
+    ladder_bar,
+    rung_rows,
+)
 from kit.tui.rows.level_card_rows import (
     BY_WORTH,
     COLUMN,
@@ -27,6 +37,7 @@ from kit.tui.rows.level_card_rows import (
 )
 from kit.tui.rows.medal_signs import MEDAL_SIGNS
 from tests.kit_content import kit_levels
+from tests.school.game.measured_drivers import measured
 from tests.tui.lesson_stage import row_text
 
 LEVELS = [each for each in kit_levels() if find_drive(each) is not None]
@@ -97,3 +108,32 @@ def test_the_sectors_of_the_quickest_own_drive_stand_beside_the_stars() -> None:
 
 def test_the_stars_of_every_level_fit_on_one_row_of_80_columns() -> None:
     assert [each.id for each in kit_levels() if row_width(star_line(each, ())) > 80] == []
+
+
+def test_a_ladder_shows_where_ordinary_drivers_stand_on_its_own_level() -> None:
+    bars = set()
+    for level in LEVELS:
+        for drivers in LADDERS:
+            reference = reference_seconds(level)
+            assert reference is not None
+            ordinary = ordinary_drives(level, drivers)
+            for width in (LIST_BAR, RESULT_BAR):
+                bar = row_text(ladder_bar(drivers[0], reference, None, width, ordinary=ordinary))
+                bars.add(bar)
+                assert [sign for sign in bar if sign.isalpha()] == [MEDAL_SIGNS[each] for each in RUNGS]
+            for driver, seconds in ordinary.items():
+                medal = medal_of(RaceFinish(True, seconds, 0), reference, driver)
+                if medal in (Medal.BRONZE, Medal.SILVER):
+                    lower, higher = (bar.index(MEDAL_SIGNS[each]) for each in (medal, Medal(medal + 1)))
+                    assert ORDINARY in bar[lower:higher], (level.id, driver)
+            rows = [row_text(each) for each in rung_rows(drivers[0], reference, ordinary=ordinary)]
+            assert sum(each.startswith(ORDINARY) for each in rows) == len(ordinary)
+            times = [float(each.split()[-2]) for each in rows]
+            assert times == sorted(times)
+    assert len(bars) > len(LEVELS), "no shape that all levels share"
+
+
+def test_a_drive_with_a_bump_is_no_ordinary_one() -> None:
+    bumped = {name for (name, driver), each in measured().items() if driver == "keys" and each.collisions}
+    assert bumped
+    assert not any(ordinary_drives(level, [DriverKind.HAND]) for level in LEVELS if level.id in bumped)

@@ -954,7 +954,12 @@ def test_the_end_of_a_drive_shows_all_rungs_and_the_next_level(
         order = [shown.index(f" {each} ") for each in ("record", "master", "you", "silver", "bronze")]
         assert order == sorted(order), "the time stands among the rungs"
         slow = ladder_of_drive(
-            replace(result.finish, seconds=1.0), result.record, DriverKind.HAND, 99.0, is_tall=True
+            result.level,
+            replace(result.finish, seconds=1.0),
+            result.record,
+            DriverKind.HAND,
+            99.0,
+            is_tall=True,
         )
         assert max(map(row_width, slow)) < LADDER_COLUMNS, "nothing of it is cut"
         assert ("m/s" in shown) is (size[1] == 50)
