@@ -185,8 +185,9 @@ def grid_rows(
     lit: Collection[Cell] = (),
 ) -> list[Row]:
     """A grid as rows, for each cell ``scale`` rows of twice as many columns; walls at the edges of the grid are as thin as can be.
-    ``signs``: sign and style of cells that differ from the drawing; where one begins, the start's is kept before it. ``figures``:
-    of cells, with their style, below the sign in cells that are large enough. ``lit``: cells that are lit around their sign."""
+    ``signs``: sign and style of cells that differ from the drawing; the start's is kept above or below its own, and in the
+    smallest cells before an arrow. ``figures``: of cells, with their style, below the sign in cells that are large enough.
+    ``lit``: cells that are lit around their sign."""
     rows, columns = len(grid), max(map(len, grid))
 
     def is_thin(number: int, count: int, line: Iterable[str]) -> bool:
@@ -204,8 +205,11 @@ def grid_rows(
             yield sign * 2 * thick[column], style
             return
         middle, text = (scale - 1) // 2, ""
+        is_start = plain == START != sign
         if part == middle:
-            text = START + sign if plain == START != sign else sign
+            text = START + sign if is_start and scale == 1 and sign in ARROWS.values() else sign
+        elif is_start and part == (0 if middle else scale - 1):
+            text = START
         elif part == middle + 1 and scale >= LEAST_WITH_FIGURES:
             text, figure_style = figures.get((row, column), ("", ""))
             style = style if style == "chosen" else figure_style

@@ -258,10 +258,15 @@ def test_the_start_is_seen_under_what_stands_on_it_and_figures_have_their_colour
     for scale in (1, 2, 3, 5):
         shown = grid_rows(grid, {(1, 1): ("@", "chosen")}, scale, worth)
         text = "\n".join(map(row_text, shown))
-        assert "S@" in text
+        assert "S@" not in text, "no sign of two letters"
+        assert ("S" in text) is (scale > 1)
         assert ("1.00" in text) is (scale >= 3)
         assert len({len(row_text(each)) for each in shown}) == 1
         assert ("good" in {style for each in shown for part, style in each if "1.00" in part}) is (scale >= 3)
+        left = "\n".join(
+            map(row_text, grid_rows(grid, {(1, 1): ("→", "dim"), (1, 2): ("@", "chosen")}, scale))
+        )
+        assert "S" in left, "once the robot has left it"
 
 
 def test_the_checks_of_a_puzzle_take_the_columns_that_there_are() -> None:
