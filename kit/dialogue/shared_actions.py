@@ -42,7 +42,7 @@ _SHARED: Final = (
         "back", "Esc q Backspace", "back", "go back", (("escape,q,backspace", "back"),)
     ),
     ScreenAction("quit", "Ctrl-C", "quit", "quit the kit", (("ctrl+c,ctrl+q", "app.quit"),), "^C", has_priority=True),
-    letter("help", "?", "help", "show this page", name="question_mark"),
+    letter("help", "?", "help", "show the keys that work here", name="question_mark"),
     ScreenAction("palette", "Ctrl-P", "find", "list all commands; type to find one", (("ctrl+p", "app.palette"),), "^P"),
     ScreenAction("glossary", ",", "glossary", "open the glossary, which explains the terms", (("comma", "app.glossary"),)),
     letter("restart", "r", "restart", "start the scene, drive, puzzle or world again"),
