@@ -149,6 +149,7 @@ def test_a_step_that_is_read_costs_nothing(lesson: Callable[[], User]) -> None:
     sees(user, "It goes ahead")
     user.send(b"nn")
     sees(user, "It goes round.")
+    user.until(lambda: ROBOT.search(user.text), "the world that stands still beside it", PATIENCE)
     assert_rests(user, 0.075)
 
 

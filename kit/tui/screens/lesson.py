@@ -159,6 +159,10 @@ class ScenePair:
         self.playback.close_session()
 
 
+LEAST_BACKDROP: Final = 8
+"""Rows from which on a small screen has the lesson's last world beside words that leave them free."""
+
+
 class LessonScreen(DialogueScreen, DriveScreen):
     """Shows one lesson, step by step. Redraws only what a key, a scene or a check has changed."""
 
@@ -256,7 +260,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
         has_work = work is not None and not work.by_hand and (is_roomy or not self._is_editing)
         lines = work.edited_lines() if work is not None and has_work else ()
         moves = self.stage.scene if dialogue.has_scene and (is_roomy or not drawn) else None
-        self._backdrop = self._open_backdrop(has_file=bool(lines)) if moves is None and is_roomy else ""
+        blank = 0 if lines or is_roomy else room - most_words - len(question) - len(shown)
+        has_room = moves is None and (is_roomy or blank >= LEAST_BACKDROP)
+        self._backdrop = self._open_backdrop(has_file=bool(lines)) if has_room else ""
         self._show_title()
         content = LessonContent(
             words,
@@ -264,7 +270,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             shown,
             moves=self.stage.world if self._backdrop else moves,
             # Not all at once, where there is little room.
-            moves_rows=self._playback_rows,
+            moves_rows=blank if self._backdrop else self._playback_rows,
             first_words=max(self._said_row, answer, len(words) - self._said_row),
             most_words=most_words,
             words_width=self._width,
