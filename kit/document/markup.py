@@ -97,9 +97,8 @@ def plain_text(row: StyledRow) -> str:
 def _wrap_block(block: MarkupBlock, width: int) -> list[StyledRow]:
     if block.kind == "code":
         spare = width - max(map(len, block.lines), default=0)
-        indent = (
-            BLOCK_INDENT[:spare] if spare >= 0 else BLOCK_INDENT
-        )  # rather than that a line is broken for it
+        # Less indented rather than that a line is broken for it.
+        indent = BLOCK_INDENT[:spare] if spare >= 0 else BLOCK_INDENT
         return [(StyledText(indent + line, TextStyle.CODE),) for line in block.lines]
     first, rest = ("- ", "  ") if block.kind == "bullet" else ("", "")
     return _wrap_styled(styled_pieces(block), width, first, rest)

@@ -27,6 +27,8 @@ from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import STAR
 from kit.tui.rows.ruled_title import ruled_title
 
+LEAST_BACKWARDS: Final = 0.02
+"""m/s, from which on a drive has driven backwards."""
 LEAST_CURVE_ROWS, HIGHEST_CURVE = 4, 22
 """Rows of a curve with its title and its scale."""
 SCALE: Final = 7
@@ -159,9 +161,15 @@ def lead_rows(leads: Sequence[float], seconds: float, width: int, room: int, enc
     return _curve_rows(title, "s, below 0: behind", leads, seconds, width, room, Axes("s", goal=0.0), encoder)
 
 
-def speed_rows(speeds: Sequence[float], seconds: float, width: int, room: int, encoder: Encoder) -> list[Row]:
-    """The same of the speed."""
-    return _curve_rows("speed", "m/s", speeds, seconds, width, room, Axes("s", low=0.0), encoder)
+def speed_rows(
+    speeds: Sequence[float], seconds: float, width: int, room: int, encoder: Encoder, title: str = "speed"
+) -> list[Row]:
+    """The same of the speed ahead; what is driven backwards is below dashes."""
+    backwards = min(speeds, default=0.0) < -LEAST_BACKWARDS
+    note, axes = (
+        ("m/s, below 0: backwards", Axes("s", goal=0.0)) if backwards else ("m/s", Axes("s", low=0.0))
+    )
+    return _curve_rows(title, note, speeds, seconds, width, room, axes, encoder)
 
 
 def _curve_rows(

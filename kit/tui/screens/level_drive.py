@@ -53,7 +53,7 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
-from kit.tui.rows.drive_end_rows import lead_rows
+from kit.tui.rows.drive_end_rows import lead_rows, speed_rows
 from kit.tui.rows.instrument_rows import TWO_COLUMNS
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.ladder_rows import in_reach_row
@@ -70,7 +70,7 @@ from kit.tui.screens.level_pictures import (
     ghost_paths,
     level_beside,
 )
-from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
+from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish, speeds_along
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.world_view import FloorClicked
@@ -176,8 +176,8 @@ class LevelDrive(EditsFile, WatchScreen):
         self._behind: float | None = None
         self._leads: list[float] = []
         """How far ahead of the reference the drive was, from interval to interval [s]."""
-        self._lead_curve: tuple[tuple[int, int, int], list[Row]] = ((0, 0, 0), [])
-        """Drawn for so many of them, in so many columns and rows."""
+        self._curve: tuple[tuple[int, int, int], list[Row]] = ((0, 0, 0), [])
+        """What is drawn below the card, for so many of them and in so many columns and rows."""
         self._is_over = False
         self._strength = 1.0
         self._told_beside: frozenset[str] = frozenset()
@@ -359,16 +359,21 @@ class LevelDrive(EditsFile, WatchScreen):
         self._told_beside = frozenset(card) if self.query_one("#panel").display else frozenset()
         rows = [each for part in card.values() for each in part]
         has_room = self._widths.beside and not self.shows_program
-        return [*rows, *self._lead_rows(width, room - len(rows))] if has_room else rows
+        return [*rows, *self._curve_rows(width, room - len(rows))] if has_room else rows
 
-    def _lead_rows(self, width: int, room: int) -> list[Row]:
-        """A curve of how far ahead of the reference the drive was until now; drawn anew only with a new value."""
-        wanted = len(self._leads), width, room
-        if wanted != self._lead_curve[0]:
-            seconds = (len(self._leads) - 1) * LEAD_INTERVAL
-            curve = lead_rows(self._leads, seconds, width, room, self._theme.encoder)
-            self._lead_curve = wanted, curve
-        return self._lead_curve[1]
+    def _curve_rows(self, width: int, room: int) -> list[Row]:
+        """A curve of how far ahead of the reference the drive was until now, before its start of the reference's speed; drawn anew
+        only with a new value."""
+        wanted, reference = (len(self._leads), width, room), self._reference
+        if wanted != self._curve[0] and reference is not None:
+            at, drawn = (width, room, self._theme.encoder), []
+            if self._leads:
+                drawn = lead_rows(self._leads, (len(self._leads) - 1) * LEAD_INTERVAL, *at)
+            elif reference.tracks:
+                speeds = speeds_along(reference.tracks[0], reference.step_size)
+                drawn = speed_rows(speeds, reference.seconds, *at, title="speed of the reference")
+            self._curve = wanted, drawn
+        return self._curve[1]
 
     def _view_arrived(self, view: View) -> None:
         """Replaces the targets and bumps of the map's case by the level's, in the world's thread."""

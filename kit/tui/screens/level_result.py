@@ -362,14 +362,20 @@ def leads_over_reference(result: DriveResult) -> list[float]:
 
 
 def speeds_of(result: DriveResult) -> list[float]:
-    """The speed of a drive [m/s] from tenth to tenth of a second, up to where it ended. Being put back to the start is none."""
+    """The speed ahead of a drive [m/s] from tenth to tenth of a second, up to where it ended."""
     tick_s = result.recording.step_size
-    places = _own_track(result)[: round(result.finish.seconds / tick_s) + 1, :2]
-    distances = np.hypot(*np.diff(places, axis=0).T)
-    distances[distances > JUMP_SPEED * tick_s] = 0.0
-    step = max(1, round(SPEED_INTERVAL / tick_s))
-    whole = distances[: len(distances) // step * step].reshape(-1, step)
-    speeds: list[float] = (whole.sum(axis=1) / (step * tick_s)).tolist()
+    return speeds_along(_own_track(result)[: round(result.finish.seconds / tick_s) + 1], tick_s)
+
+
+def speeds_along(track: FloatArray, tick_s: float) -> list[float]:
+    """The speed ahead [m/s], negative backwards, from tenth to tenth of a second on a track, (ticks, 3) ``x y theta`` [m, m, rad], a
+    pose for each ``tick_s``. Being put back to the start is none."""
+    steps, headings = np.diff(track[:, :2], axis=0), track[:-1, 2]
+    ahead = steps[:, 0] * np.cos(headings) + steps[:, 1] * np.sin(headings)
+    ahead[np.hypot(*steps.T) > JUMP_SPEED * tick_s] = 0.0
+    count = max(1, round(SPEED_INTERVAL / tick_s))
+    whole = ahead[: len(ahead) // count * count].reshape(-1, count)
+    speeds: list[float] = (whole.sum(axis=1) / (count * tick_s)).tolist()
     return speeds
 
 

@@ -93,9 +93,11 @@ def test_a_large_screen_draws_how_the_drive_has_stood_against_the_reference(tmp_
         drive = pilot.app.screen
         assert isinstance(drive, LevelDrive)
         await until(pilot, lambda: drive.view is not None, "the world")
+        await seen(pilot, "speed of the reference")
         assert "ahead of the reference" not in text(pilot)
         drive.drive_keys_changed(("p_up",), drive.drive.state)
         await seen(pilot, "ahead of the reference")
+        assert "speed of the reference" not in text(pilot)
         await until(pilot, lambda: drive._behind is not None and drive._behind > 0.5, "a slow drive")
         assert drive._leads[-1] < 0.0, "one that is behind is not ahead"
         assert drive.view is not None

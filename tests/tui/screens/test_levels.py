@@ -56,6 +56,7 @@ from kit.tui.screens.level_result import (
     DriveResultScreen,
     gain_color,
     scene_of_drive,
+    speeds_along,
     speeds_of,
 )
 from kit.tui.screens.levels import LevelsScreen
@@ -784,6 +785,16 @@ def test_a_robot_that_is_put_back_to_its_start_has_no_speed_from_there(
     )
     speeds = speeds_of(replace(result, recording=recording))  # type: ignore[arg-type]  # all that it needs
     assert max(speeds) <= 1.05 * max(speeds_of(result))
+
+
+def test_driving_backwards_is_a_speed_below_zero_in_any_direction() -> None:
+    for heading in (0.0, 2.0):
+        ahead = np.arange(21.0) * 0.01
+        there = np.stack([ahead * np.cos(heading), ahead * np.sin(heading), np.full(21, heading)], 1)
+        track = np.concatenate([there, there[::-1]])
+        speeds = speeds_along(track, 0.02)
+        assert speeds[:4] == pytest.approx([0.5] * 4)
+        assert speeds[-3:] == pytest.approx([-0.5] * 3)
 
 
 @pytest.mark.long
