@@ -124,7 +124,7 @@ def test_a_puzzle_is_played_by_keys_and_kept_in_its_file(journal: ProgressJourna
         screen = pilot.app.screen
         assert isinstance(screen, PuzzleScreen)
         await seen(pilot, "▀██████████▀")  # the medal beside the board
-        assert re.search("█ S. {2}[.←→↑↓] {3}", "\n".join(rows(pilot))), "which keeps its size"
+        assert re.search("█ [.←→↑↓] {3}[.←→↑↓] {3}", "\n".join(rows(pilot))), "which keeps its size"
         await pilot.press("u")
         assert screen._flourish.number == 0
         assert "▀██████████▀" not in "\n".join(rows(pilot))
@@ -359,7 +359,7 @@ def test_on_80_columns_the_list_uses_all_rows_and_has_the_board_beside_it(
     journal: ProgressJournal, tmp_path: Path
 ) -> None:
     async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
-        await seen(pilot, "██S@. . . . . . . ██")
+        await seen(pilot, "██@ . . . . . . . ██")
         shown = rows(pilot)
         below = max(number for number, each in enumerate(shown) if each[3:].startswith("The "))
         assert shown[below + 1].startswith(FIRST.title), "what is said of it comes right below"

@@ -128,7 +128,7 @@ def test_it_finds_terms_of_the_glossary_by_each_of_their_spellings(house: House,
 def test_it_does_what_a_key_of_the_screen_does(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
-        await pilot.press("ctrl+p", *"this page", "enter")
+        await pilot.press("ctrl+p", *"the keys that work", "enter")
         await seen(pilot, "The start screen")
 
     house.play(scene)
@@ -140,7 +140,7 @@ def test_over_a_message_it_opens_for_the_screen_below(house: House) -> None:
         below = pilot.app.screen
         pilot.app.push_screen(MessageDialog("That did not work", "For a reason."))
         await seen(pilot, "For a reason")
-        await pilot.press("ctrl+p", *"this page", "enter")
+        await pilot.press("ctrl+p", *"the keys that work", "enter")
         await seen(pilot, "The start screen")
         assert pilot.app.screen_stack[-2] is below
 
