@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Final
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageFilter, ImageOps
+from rich.style import Style
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.message import Message
 
-from kit.arrays import BoolArray, FloatArray
+from kit.arrays import BoolArray, FloatArray, Uint8Array
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import row
 from kit.mapmaking.pixels import Corners
 from kit.mapmaking.sheet import order_corners
 from kit.render import raster
-from kit.render.encode import Encoder
+from kit.render.encode import BLANK, Encoder
 from kit.render.frame_text import write_text
+from kit.render.role_looks import RoleStyle
 from kit.render.roles import Role
+from kit.render.xterm_colors import nearest_xterm_color
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.textual_patches import ActivePaintScreen
@@ -31,6 +36,8 @@ if TYPE_CHECKING:
     from kit.tui.theme import Theme
 
 Point = tuple[float, float]
+Part = tuple[float, float, float, float]
+"""Left, top, right and bottom of a part of a photograph [pixels]."""
 CORNERS: Final = 4
 MAX_ZOOM: Final = 6
 """Each doubles the picture."""
@@ -40,8 +47,7 @@ THRESHOLDS: Final = (
     np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float64) * 16 + 8
 )
 """Brightness above which a dot is lit, by its place in a square of four (Bayer's matrix): many thresholds look like grey."""
-
-
+UPPER_HALF: Final = ord("▀")
 PARTS: Final = 3
 """A dot is looked at in so many parts along each side: a line is thinner than a dot."""
 AROUND: Final = 9
@@ -50,10 +56,13 @@ LINE_SHARE: Final = 0.75
 """What is darker than this share of its surroundings is a line."""
 LEAST_PAPER: Final = 60
 """Brightness of 255 above which surroundings can be paper."""
+FIRST_SHADE, SHADES = 200, 32
+"""What stands for black in a frame, where a role's number does elsewhere, and how many greys there are."""
 
 
 class PhotoView(FrameView):
-    """A photograph as dots, with the corners so far and a cross at the cursor."""
+    """A photograph with the corners so far and a cross at the cursor: in greys, two above each other in a character, and as dots
+    where the terminal has no colours of its own for them."""
 
     DEFAULT_CSS = "PhotoView { width: 1fr; height: 1fr; }"
 
@@ -68,6 +77,9 @@ class PhotoView(FrameView):
     def __init__(self, theme: Theme, photo: Image.Image) -> None:
         super().__init__(theme.palette)
         self._encoder: Encoder = theme.encoder
+        terminal = theme.terminal
+        self._has_greys = not terminal.ansi and terminal.glyphs.value != "ascii"
+        self._is_reduced = terminal.colour.value == "256"
         self._grey = ImageOps.autocontrast(photo.convert("L"), cutoff=1)
         self.zoom = 0
         self._left_top: Point = (0.0, 0.0)
@@ -93,11 +105,9 @@ class PhotoView(FrameView):
         )
         dots = columns * encoder.across, rows * encoder.down
         inside = (max(0.0, left), max(0.0, top), min(width, left + seen[0]), min(height, top + seen[1]))
-        (x1, y1), (x2, y2) = self._dot(inside[:2], dots), self._dot(inside[2:], dots)
-        size = max(1, round(x2 - x1)), max(1, round(y2 - y1))
-        part = Image.new("1", dots)  # what lies beyond the photograph is dark
-        part.paste(Image.fromarray(lit_dots(self._grey, inside, size)), (round(x1), round(y1)))
-        grid = np.where(np.asarray(part), np.uint8(Role.PEN_WHITE), np.uint8(Role.EMPTY))
+        grid = np.full(dots[::-1], np.uint8(Role.EMPTY))
+        if not self._has_greys:
+            grid[self._placed(lit_dots, inside, dots) > 0] = Role.PEN_WHITE
         places = [self._dot(corner, dots) for corner in corners]
         lines = [
             (*one, *other)
@@ -113,11 +123,47 @@ class PhotoView(FrameView):
             found = raster.line_dots(np.array(segments, dtype=np.float64).reshape(-1, 4), *dots)
             grid[found] = role
         frame = encoder.encode(grid)
+        if self._has_greys:
+            above, below = (
+                self._placed(shades, inside, (columns, 2 * rows)).reshape(rows, 2, columns).swapaxes(0, 1)
+            )
+            is_free = frame.glyphs == BLANK
+            frame.glyphs[is_free & (above > 0)] = UPPER_HALF
+            frame.fg[is_free] = above[is_free]
+            frame.bg[:] = np.where(is_free, below, FIRST_SHADE)  # lines stand out from white paper too
         for number, (x, y) in enumerate(places, 1):
             row_, column = int(y // encoder.down), int(x // encoder.across)
             if 0 <= column < columns:
                 write_text(frame, row_, column, str(number), Role.TARGET)
         self.show_frame(frame)
+
+    def _placed(
+        self,
+        drawn: Callable[[Image.Image, Part, tuple[int, int]], NDArray[Any]],
+        inside: Part,
+        dots: tuple[int, int],
+    ) -> Uint8Array:
+        """A part of the photograph [pixels] where it is on the screen, (rows, columns) of ``dots``; 0 beyond it."""
+        (x1, y1), (x2, y2) = self._dot(inside[:2], dots), self._dot(inside[2:], dots)
+        size = max(1, round(x2 - x1)), max(1, round(y2 - y1))
+        placed = Image.new("L", dots)
+        shown = drawn(self._grey, inside, size).astype(np.uint8)
+        placed.paste(Image.fromarray(shown), (round(x1), round(y1)))
+        return np.asarray(placed)
+
+    def _style(self, foreground: int, background: int) -> Style | None:
+        looks = foreground, background
+        if max(looks) >= FIRST_SHADE and looks not in self._styles:
+            self._styles[looks] = self._made_style(self._look(foreground), self._look(background))
+        return super()._style(foreground, background)
+
+    def _look(self, number: int) -> RoleStyle:
+        """Of a grey, or of a role."""
+        if number < FIRST_SHADE:
+            return self._palette[Role(number)]
+        grey = (number - FIRST_SHADE) * 255 // (SHADES - 1)
+        rgb = grey, grey, grey
+        return RoleStyle(nearest_xterm_color(rgb) if self._is_reduced else rgb)
 
     def _dot(self, place: Point, dots: tuple[int, int]) -> Point:
         """Converts a place of the photograph to a place on the screen [dots]."""
@@ -132,9 +178,7 @@ class PhotoView(FrameView):
         )
 
 
-def lit_dots(
-    grey: Image.Image, inside: tuple[float, float, float, float], size: tuple[int, int]
-) -> BoolArray:
+def lit_dots(grey: Image.Image, inside: Part, size: tuple[int, int]) -> BoolArray:
     """The dots (rows, columns) that show a part of a grey picture [pixels] in ``size`` columns and rows of dots. As many are lit as
     it is bright. A line that is darker than its surroundings stays dark between lit dots, however thin it is.
 
@@ -144,16 +188,39 @@ def lit_dots(
     [True, False, True]
     """
     columns, rows = size
+    levels, _, is_line, is_paper = _levels_and_lines(grey, inside, size)
+    is_beside = np.asarray(Image.fromarray(is_line).convert("L").filter(ImageFilter.MaxFilter(3))) > 0
+    tiles = np.tile(THRESHOLDS, (-(-rows // 4), -(-columns // 4)))[:rows, :columns]
+    lit: BoolArray = ((levels > tiles) | (is_beside & is_paper)) & ~is_line
+    return lit
+
+
+def shades(grey: Image.Image, inside: Part, size: tuple[int, int]) -> Uint8Array:
+    """The greys (rows, columns) of a part of a grey picture [pixels], from ``FIRST_SHADE`` for black on. A line that is darker than
+    its surroundings has all of its darkness, however thin it is.
+
+    >>> picture = Image.new("L", (100, 100), 255)
+    >>> picture.paste(0, (50, 0, 52, 100))
+    >>> (shades(picture, (0, 0, 100, 100), (20, 20))[10, 9:12] - FIRST_SHADE).tolist()
+    [31, 0, 31]
+    """
+    levels, darkest, is_line, _ = _levels_and_lines(grey, inside, size)
+    shown = np.where(is_line, darkest, levels) * (SHADES - 1) / 255
+    return (FIRST_SHADE + np.rint(shown)).astype(np.uint8)
+
+
+def _levels_and_lines(
+    grey: Image.Image, inside: Part, size: tuple[int, int]
+) -> tuple[FloatArray, FloatArray, BoolArray, BoolArray]:
+    """Of each dot (rows, columns) its brightness and that of its darkest part, from 0 to 255, whether a line goes through it, and
+    whether paper is around it."""
+    columns, rows = size
     fine = grey.resize((PARTS * columns, PARTS * rows), Image.Resampling.BOX, inside)
     parts = np.asarray(fine, dtype=np.float64).reshape(rows, PARTS, columns, PARTS)
     levels, darkest = parts.mean(axis=(1, 3)), parts.min(axis=(1, 3))
     around = np.asarray(Image.fromarray(levels.astype(np.uint8)).filter(ImageFilter.MedianFilter(AROUND)))
     is_paper = around > LEAST_PAPER
-    is_line = is_paper & (darkest < LINE_SHARE * around)
-    is_beside = np.asarray(Image.fromarray(is_line).convert("L").filter(ImageFilter.MaxFilter(3))) > 0
-    tiles = np.tile(THRESHOLDS, (-(-rows // 4), -(-columns // 4)))[:rows, :columns]
-    lit: BoolArray = ((levels > tiles) | (is_beside & is_paper)) & ~is_line
-    return lit
+    return levels, darkest, is_paper & (darkest < LINE_SHARE * around), is_paper
 
 
 def _first_seen(middle: float, seen: float, length: int) -> float:

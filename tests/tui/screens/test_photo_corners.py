@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image, ImageDraw
@@ -9,7 +11,9 @@ from textual.pilot import Pilot
 
 from kit.mapmaking.photo import PhotoScale, plan_from_photo
 from kit.mapmaking.sheet import SheetNotFound, find_sheet, order_corners, refine_corners
-from kit.tui.screens.photo_corners import PhotoCornersScreen, PhotoView, lit_dots
+from kit.tui.screens.photo_corners import FIRST_SHADE, SHADES, PhotoCornersScreen, PhotoView, lit_dots
+from kit.tui.terminal import Colour
+from kit.tui.theme import Theme
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 
 CORNERS = ((100.0, 60.0), (700.0, 90.0), (680.0, 520.0), (80.0, 500.0))
@@ -36,6 +40,39 @@ def place_on_screen(pilot: Pilot[None], place: tuple[float, float]) -> tuple[int
     scale = max(800 / size.width, 600 / (2 * size.height))
     left, top = (800 - scale * size.width) / 2, (600 - scale * 2 * size.height) / 2
     return int((place[0] - left) / scale), int((place[1] - top) / (2 * scale))
+
+
+@pytest.mark.parametrize("colour", ["truecolour", "256", "ansi16"])
+def test_a_photograph_is_in_greys_where_the_terminal_has_them_and_in_dots_elsewhere(colour: Colour) -> None:
+    def screen(theme: Theme) -> PhotoCornersScreen:
+        facts = theme.terminal
+        facts = replace(
+            facts,
+            colour=replace(facts.colour, value=colour),
+            theme_name=replace(facts.theme_name, value="dark"),
+        )
+        return PhotoCornersScreen(Theme.of(facts), "plan.jpg", photo())
+
+    async def scene(pilot: Pilot[None]) -> None:
+        view = screen_of(pilot).query_one(PhotoView)
+        await until(pilot, lambda: view.frame is not None, "the photograph")
+        frame = view.frame
+        assert frame is not None
+        has_greys = bool((frame.bg >= FIRST_SHADE).any())
+        assert has_greys is (colour != "ansi16")
+        if not has_greys:
+            return
+        column, row = place_on_screen(pilot, (390.0, 120.0))
+        assert frame.bg[row, column] > FIRST_SHADE + SHADES // 2, "paper"
+        column, row = place_on_screen(pilot, (40.0, 300.0))
+        assert frame.bg[row, column] < FIRST_SHADE + SHADES // 2, "the table"
+        assert frame.bg[0, 0] == 0, "beyond the photograph"
+        style = view._style(FIRST_SHADE + SHADES - 1, FIRST_SHADE)
+        assert style is not None
+        assert style.color is not None
+        assert style.color.get_truecolor().red > 230
+
+    stage(screen, scene)
 
 
 @pytest.mark.long
