@@ -12,6 +12,7 @@ import click
 from kit.cli import messages, opening, options, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.process import INTERRUPTED
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
@@ -241,7 +242,7 @@ where = click.option(
 )
 
 
-@click.group(invoke_without_command=True)
+@click.group(cls=HintingGroup, invoke_without_command=True)
 @options.workspace
 @click.pass_context
 def package_command(ctx: click.Context, workspace: Path | None) -> None:

@@ -77,6 +77,10 @@ def _prepare(command: click.Command, everywhere: Sequence[click.Option]) -> clic
     return command
 
 
+LONGEST_SENTENCE: Final = 1000
+"""Characters of what is said of a command in the list of its group."""
+
+
 class HintingGroup(click.Group):
     """A group that tells which of its commands a word that is none may mean."""
 
@@ -99,6 +103,18 @@ class HintingGroup(click.Group):
             raise click.UsageError(
                 f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the commands.", ctx
             ) from None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Each with its whole first sentence, which click would cut to the end of a line."""
+        commands = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
+        told = [
+            (name, each.get_short_help_str(LONGEST_SENTENCE))
+            for name, each in commands
+            if each is not None and not each.hidden
+        ]
+        if told:
+            with formatter.section("Commands"):
+                formatter.write_dl(told)
 
 
 class LazyGroup(HintingGroup):

@@ -79,7 +79,7 @@ def command(context: click.Context, workspace: Path | None, folder: Path | None,
     against the other one while that alone stands still; each pair plays twice. Programs are confined as when they are graded.
 
     Whoever enters first meets the programs of the house, three that come with the kit: they win no title,
-    and ``kit league run --no-house`` leaves them out.
+    and `kit league run --no-house` leaves them out.
 
     Ratings follow Bradley and Terry: 400 points more mean ten times as many wins. Only the commands of a drive are stored:
     everybody's kit runs them again and judges them, so a result that is no drive does not count.

@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.process import INTERRUPTED
 from kit.cli.ros.message_options import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import (
@@ -36,7 +37,7 @@ from kit.ros.graph.action_names import (
 from kit.ros.node.time import S_TO_NS
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Inspect the actions of the running world and send goals, which take time and can be canceled."""
 

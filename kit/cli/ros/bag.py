@@ -13,6 +13,7 @@ import click
 
 from kit.cli import bag_storage
 from kit.cli.bag_storage import Storage
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.options import ListOptionsCommand
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from kit.ros.bags import Bag, BagRecorder
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Record and play bags: messages of topics, with their simulated times."""
 

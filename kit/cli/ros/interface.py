@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.ros.message_options import find_or_exit
 from kit.cli.ros.world_client import exit_with_error, register_workspace_interfaces
 from kit.inspection.definition_text import CommentOptions, definition_text
@@ -14,7 +15,7 @@ from kit.msg.message import Message, Service, is_custom_interface
 from kit.msg.message_text import MessageFormat, to_yaml
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Show message, service and action types. Needs no running world."""
 

@@ -6,6 +6,7 @@ from typing import Any, Final
 
 import click
 
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute_name, node_names
@@ -14,7 +15,7 @@ from kit.msg.interfaces import find_service
 GET_STATE_TYPE: Final = "lifecycle_msgs/srv/GetState"
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Inspect and change the lifecycle nodes of the running world, which are configured and activated from outside."""
 

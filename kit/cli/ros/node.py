@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import click
 
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute_name, node_info, node_names
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Inspect the nodes of the running world: programs, or parts of programs, that exchange messages."""
 

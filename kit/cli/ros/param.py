@@ -10,6 +10,7 @@ from typing import Any, Final
 import click
 import yaml
 
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute_name, node_names
@@ -36,7 +37,7 @@ SERVICE_TIMEOUT_S: Final = 5.0
 hidden_nodes = click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Include hidden nodes.")
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Read and change parameters: settings of running nodes."""
 

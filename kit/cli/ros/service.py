@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.ros import topic
 from kit.cli.ros.message_options import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import (
@@ -20,7 +21,7 @@ from kit.inspection.graph_text import service_info, services
 from kit.msg.interfaces import find_service
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Inspect and call the services of the running world: requests that a node answers."""
 

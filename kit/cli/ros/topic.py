@@ -12,6 +12,7 @@ from typing import Any, Final
 import click
 
 from kit.cli.existing_path import ExistingPath
+from kit.cli.lazy_group import HintingGroup
 from kit.cli.ros.message_options import QosOptions, find_or_exit, make_message, parse_fields, with_qos_options
 from kit.cli.ros.world_client import (
     exit_with_error,
@@ -306,7 +307,7 @@ def _subscribe(
     )
 
 
-@click.group()
+@click.group(cls=HintingGroup)
 def command() -> None:
     """Inspect the topics of the running world, named channels for messages, and publish to them."""
 
