@@ -12,10 +12,12 @@ from types import MappingProxyType
 from typing import ClassVar, Final
 from weakref import finalize
 
+from rich.cells import cell_len
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
+from textual.geometry import Offset
 from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import TextArea
@@ -206,6 +208,10 @@ class PasteRefused(Message):
     """What was pasted is more than a program may be."""
 
 
+CURSOR_ROOM: Final = 3
+"""Columns that Textual keeps in sight from the cursor on."""
+
+
 class ProgramTextArea(KitTextArea):
     """A text area with Python or YAML in colours. They come from pygments, which Textual brings along, so that nothing needs
     to be compiled; Textual's own way is the parser tree-sitter."""
@@ -262,6 +268,16 @@ class ProgramTextArea(KitTextArea):
             event.prevent_default()
             event.stop()
             self.post_message(PasteRefused())
+
+    def scroll_cursor_visible(self, center: bool = False, animate: bool = False) -> Offset:
+        """The lines' beginnings come back as soon as the cursor has room beside them: Textual leaves a text scrolled to the right
+        after a long line, as far as the cursor can still be seen."""
+        offset = super().scroll_cursor_visible(center, animate)
+        line, column = self.cursor_location
+        before = cell_len(self.document.get_line(line)[:column])
+        if self.scroll_offset.x and before + CURSOR_ROOM + self.gutter_width <= self.size.width:
+            self.scroll_to(x=0, animate=False, immediate=True)
+        return offset
 
     def mark_line(self, number: int | None) -> None:
         """Marks a line, from 1, as the one that is wrong; None: none is."""

@@ -92,6 +92,24 @@ def test_enter_begins_where_the_line_above_does(
     stage(AreaScreen, scene)
 
 
+@pytest.mark.parametrize("keys", [["enter"], ["home"], ["up"]])
+def test_after_a_long_line_the_beginnings_of_lines_are_in_sight_again(keys: list[str]) -> None:
+    class AreaScreen(Screen[None]):
+        def compose(self) -> ComposeResult:
+            yield ProgramTextArea()
+
+    async def scene(pilot: Pilot[None]) -> None:
+        area = pilot.app.screen.query_one(ProgramTextArea)
+        area.focus()
+        area.show_text(f"    short = 1\n    long = {'1 + ' * 40}1", "python")
+        area.move_cursor(area.document.end)
+        await until(pilot, lambda: area.scroll_offset.x > 0, "the end of the long line")
+        await pilot.press(*keys)
+        await until(pilot, lambda: area.scroll_offset.x == 0, "the lines' beginnings")
+
+    stage(AreaScreen, scene)
+
+
 def styles_in(area: ProgramTextArea) -> dict[str, set[str]]:
     """The texts that are in each style, each as long as the style goes on."""
     found: dict[str, set[str]] = {}
